@@ -1,0 +1,122 @@
+//! The immutable result of planning: routes, their schedule and what is wrong with them.
+
+/// When one visit of a route happens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// Index of the visit in the problem.
+    pub visit: usize,
+    /// Seconds after take-off from the depot when the drone arrives.
+    pub arrival: f64,
+    /// Seconds after take-off from the depot when the drone leaves.
+    pub departure: f64,
+}
+
+/// What one drone flies: depot, stops in flying order, depot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// The visits in flying order; never empty.
+    pub stops: Vec<Stop>,
+    /// Length from depot to depot, in length units.
+    pub length: f64,
+    /// Seconds from depot to depot: legs and service.
+    pub duration: f64,
+}
+
+impl Route {
+    /// Indices of the visits in flying order.
+    pub fn visits(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.stops.iter().map(|stop| stop.visit)
+    }
+}
+
+/// Something a plan must not do.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Violation {
+    /// A visit that no route makes.
+    #[error("pond {visit} is not visited")]
+    Unserved {
+        /// Index of the visit.
+        visit: usize,
+    },
+    /// A visit made more than once.
+    #[error("pond {visit} is visited {num_times} times")]
+    Repeated {
+        /// Index of the visit.
+        visit: usize,
+        /// How often it is made.
+        num_times: usize,
+    },
+    /// More routes than drones.
+    #[error("{num_routes} routes for {num_available} drones")]
+    TooManyRoutes {
+        /// Routes of the plan.
+        num_routes: usize,
+        /// Drones of the fleet.
+        num_available: usize,
+    },
+    /// A route longer than a drone can fly.
+    #[error("route {route} is {length} long, the limit is {max_length}")]
+    TooLong {
+        /// Index of the route.
+        route: usize,
+        /// Its length.
+        length: f64,
+        /// The limit.
+        max_length: f64,
+    },
+    /// A route that takes longer than a drone can be under way.
+    #[error("route {route} takes {duration} s, the limit is {max_duration} s")]
+    TooSlow {
+        /// Index of the route.
+        route: usize,
+        /// Its duration in seconds.
+        duration: f64,
+        /// The limit in seconds.
+        max_duration: f64,
+    },
+}
+
+/// Routes with their schedule, as [`crate::evaluate::evaluate`] recomputes them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// One route a drone that flies, in the order given.
+    pub routes: Vec<Route>,
+    /// What is wrong with it; empty for a feasible plan.
+    pub violations: Vec<Violation>,
+}
+
+impl Plan {
+    /// Whether nothing is wrong with it.
+    #[must_use]
+    pub fn is_feasible(&self) -> bool {
+        self.violations.is_empty()
+    }
+
+    /// The longest route in length units: the paper's metric.
+    #[must_use]
+    pub fn max_route_length(&self) -> f64 {
+        self.routes.iter().map(|route| route.length).fold(0.0, f64::max)
+    }
+
+    /// The sum of all route lengths.
+    #[must_use]
+    pub fn total_length(&self) -> f64 {
+        self.routes.iter().map(|route| route.length).sum()
+    }
+
+    /// The longest route in seconds.
+    #[must_use]
+    pub fn makespan(&self) -> f64 {
+        self.routes.iter().map(|route| route.duration).fold(0.0, f64::max)
+    }
+
+    /// The visits that no route makes.
+    #[must_use]
+    pub fn unserved(&self) -> Vec<usize> {
+        let unserved = |violation: &Violation| match *violation {
+            Violation::Unserved { visit } => Some(visit),
+            _ => None,
+        };
+        self.violations.iter().filter_map(unserved).collect()
+    }
+}

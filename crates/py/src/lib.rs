@@ -1,0 +1,32 @@
+//! `pondhop._core`: the Python binding of `pondhop-core`.
+//!
+//! It converts, releases the GIL and maps errors; it holds no algorithm. Its files are named after the core modules they
+//! wrap. Every index is checked at this border, because a Rust panic is no `Exception` in Python.
+
+mod error;
+mod evaluate;
+mod plan;
+mod problem;
+mod travel;
+
+use pyo3::prelude::*;
+
+/// The native core of pondhop. Use the names of the package `pondhop`, not this module.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::evaluate::evaluate;
+    #[pymodule_export]
+    use crate::plan::Plan;
+    #[pymodule_export]
+    use crate::problem::Problem;
+    #[pymodule_export]
+    use crate::travel::LocalFrame;
+
+    use super::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
