@@ -17,4 +17,5 @@ pub mod geometry;
 pub mod plan;
 pub mod problem;
 pub mod random;
+pub mod search;
 pub mod travel;

@@ -1,0 +1,171 @@
+//! Ruin and recreate under simulated annealing.
+//!
+//! Source: Christiaens and Vanden Berghe 2020 (SISR), algorithm 1: a step replaces the current plan if its cost is below the
+//! current cost plus an exponentially distributed allowance whose mean, the temperature, falls geometrically. Changed: the
+//! allowance is drawn before the step, so that a step which cannot pass ends early; a step that fails is taken back by
+//! copying what it touched, so that its cost does not depend on the size of the plan.
+
+use super::budget::{Budget, Progress};
+use super::network::Network;
+use super::recreate::{Objective, Recreate};
+use super::ruin::Ruin;
+use super::state::{State, Touched};
+use crate::random::Random;
+
+/// Share of the steps that start on the longest route.
+const LONGEST_SHARE: f64 = 0.5;
+/// Draws before a step gives up finding a visit of the longest route, which then is a short one.
+const MAX_SEED_DRAWS: usize = 64;
+/// Steps between two looks at the clock.
+const STEPS_PER_LOOK: u64 = 8;
+/// Steps between two reports.
+const STEPS_PER_REPORT: u64 = 2048;
+
+/// A temperature that falls geometrically between two shares of the effort.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Schedule {
+    pub begin: f64,
+    pub end: f64,
+    /// Temperature at the beginning, in units of cost.
+    pub hot: f64,
+    /// Temperature at the end, in units of cost.
+    pub cold: f64,
+}
+
+impl Schedule {
+    fn temperature(&self, share: f64) -> f64 {
+        let progress = ((share - self.begin) / (self.end - self.begin)).clamp(0.0, 1.0);
+        self.hot * libm::pow(self.cold / self.hot, progress)
+    }
+}
+
+/// One annealing chain.
+pub(super) struct Chain {
+    /// The cheapest plan found.
+    pub best: State,
+    /// Its cost.
+    pub best_value: f64,
+    /// Steps made.
+    pub num_iterations: u64,
+    pub objective: Objective,
+    random: Random,
+    current: State,
+    current_value: f64,
+    /// Equal to `current` between steps.
+    trial: State,
+    ruin: Ruin,
+    recreate: Recreate,
+    touched: Touched,
+    /// What differs between `current` and `best`.
+    since_best: Touched,
+}
+
+impl Chain {
+    pub fn new(state: State, objective: Objective, seed: u64) -> Self {
+        let mut random = Random::new(seed);
+        let recreate = Recreate::new(&mut random);
+        let value = objective.value(&state);
+        Self {
+            best: state.clone(),
+            best_value: value,
+            num_iterations: 0,
+            objective,
+            random,
+            current: state.clone(),
+            current_value: value,
+            trial: state,
+            ruin: Ruin::default(),
+            recreate,
+            touched: Touched::default(),
+            since_best: Touched::default(),
+        }
+    }
+
+    /// Goes on from the best plan, judged by `objective`.
+    pub fn restart(&mut self, objective: Objective) {
+        self.current.copy_touched(&self.best, &self.since_best);
+        self.trial.copy_touched(&self.best, &self.since_best);
+        self.since_best.clear();
+        self.objective = objective;
+        self.best_value = objective.value(&self.best);
+        self.current_value = self.best_value;
+    }
+
+    /// Goes on from another chain's best plan.
+    pub fn adopt(&mut self, state: &State) {
+        for own in [&mut self.best, &mut self.current, &mut self.trial] {
+            own.clone_from(state);
+        }
+        self.since_best.clear();
+        self.restart(self.objective);
+    }
+
+    /// Anneals until the share `until` of the effort is used, or no route is longer than `floor`, which none can undercut.
+    pub fn anneal(&mut self, network: &Network, budget: &Budget<'_>, schedule: &Schedule, until: f64, floor: f64) {
+        let mut share = budget.share(self.num_iterations);
+        while share < until && self.best.max_route_cost() > floor {
+            let temperature = schedule.temperature(share);
+            for _ in 0..STEPS_PER_LOOK {
+                self.step(network, temperature);
+            }
+            self.num_iterations += STEPS_PER_LOOK;
+            if self.num_iterations.is_multiple_of(STEPS_PER_REPORT) {
+                let num_iterations = self.num_iterations;
+                budget.report(&Progress { max_route_cost: self.best.max_route_cost(), num_iterations, share });
+            }
+            share = budget.share(self.num_iterations);
+        }
+    }
+
+    fn step(&mut self, network: &Network, temperature: f64) {
+        let seed = self.draw_seed(network);
+        // 1 - u is never 0, so the logarithm is finite.
+        let threshold = self.current_value - temperature * libm::log(1.0 - self.random.uniform());
+        self.ruin.remove(network, &mut self.trial, seed, &mut self.random, &mut self.touched);
+        let is_complete = self.recreate.insert(
+            network,
+            &mut self.trial,
+            &self.ruin,
+            &self.objective,
+            threshold,
+            &mut self.random,
+            &mut self.touched,
+        );
+        let value = if is_complete { self.objective.value(&self.trial) } else { f64::INFINITY };
+        if value < threshold {
+            self.accept(network, value);
+        } else {
+            self.trial.copy_touched(&self.current, &self.touched);
+        }
+        self.touched.clear();
+    }
+
+    fn accept(&mut self, network: &Network, value: f64) {
+        self.current.copy_touched(&self.trial, &self.touched);
+        self.current_value = value;
+        self.since_best.append(&self.touched);
+        if value < self.best_value {
+            self.best_value = value;
+            self.best.copy_touched(&self.trial, &self.since_best);
+            self.since_best.clear();
+            self.objective.target = self.objective.target.min(self.trial.max_route_cost());
+        } else if self.since_best.nodes.len() > 4 * network.num_visits {
+            self.since_best.remove_repetitions();
+        }
+    }
+
+    /// A visit to ruin around: any, or one of the longest route.
+    fn draw_seed(&mut self, network: &Network) -> u32 {
+        let mut seed = self.random.below(network.num_visits) as u32;
+        if self.random.uniform() < LONGEST_SHARE {
+            let longest = self.trial.longest_route();
+            for _ in 0..MAX_SEED_DRAWS {
+                if self.trial.nodes[seed as usize].route == longest {
+                    break;
+                }
+                seed = self.random.below(network.num_visits) as u32;
+            }
+        }
+        seed
+    }
+}

@@ -1,0 +1,63 @@
+//! How much of the effort is used: iterations, time, or the wish to stop.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a search reports while it runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Cost of the longest route of the best plan so far, in seconds (length units in research instances).
+    pub max_route_cost: f64,
+    /// Steps so far, of the reporting thread.
+    pub num_iterations: u64,
+    /// Share of the effort used, 0 to 1.
+    pub share: f64,
+}
+
+/// The share of the time limit used so far; 1 or more ends the search. The core has no clock of its own.
+pub type Clock<'a> = &'a (dyn Fn() -> f64 + Sync);
+
+/// Told now and then how far the search is; `Break` ends it with the best plan so far.
+pub type Watch<'a> = &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync);
+
+/// The effort of one search, shared by its threads.
+pub(super) struct Budget<'a> {
+    max_iterations: Option<u64>,
+    clock: Option<Clock<'a>>,
+    watch: Option<Watch<'a>>,
+    is_stopped: AtomicBool,
+}
+
+impl<'a> Budget<'a> {
+    pub fn new(max_iterations: Option<u64>, clock: Option<Clock<'a>>, watch: Option<Watch<'a>>) -> Self {
+        Self { max_iterations, clock, watch, is_stopped: AtomicBool::new(false) }
+    }
+
+    /// Share of the effort used by a thread that made `num_iterations` steps.
+    pub fn share(&self, num_iterations: u64) -> f64 {
+        if self.is_stopped.load(Ordering::Relaxed) {
+            return 1.0;
+        }
+        let of_iterations = self.max_iterations.map_or(0.0, |limit| num_iterations as f64 / limit as f64);
+        let of_time = self.clock.map_or(0.0, |clock| clock());
+        of_iterations.max(of_time)
+    }
+
+    /// Whether the time is over; iterations do not count, so that what is not an iteration stays reproducible.
+    pub fn is_time_over(&self) -> bool {
+        self.is_stopped.load(Ordering::Relaxed) || self.clock.is_some_and(|clock| clock() >= 1.0)
+    }
+
+    /// Share of the effort that work worth `num_iterations` steps used, if it began when `begin` of the effort was used.
+    pub fn share_of_work(&self, num_iterations: f64, begin: f64) -> f64 {
+        let of_iterations = self.max_iterations.map_or(0.0, |limit| num_iterations / limit as f64);
+        let of_time = self.clock.map_or(0.0, |clock| clock() - begin);
+        of_iterations.max(of_time)
+    }
+
+    pub fn report(&self, progress: &Progress) {
+        if self.watch.is_some_and(|watch| watch(progress).is_break()) {
+            self.is_stopped.store(true, Ordering::Relaxed);
+        }
+    }
+}

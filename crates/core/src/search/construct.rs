@@ -1,0 +1,168 @@
+//! A first plan: balanced sectors around the depot, each toured along a space-filling curve and then improved.
+//!
+//! Sources: the sweep of Gillett and Miller, Operations Research 1974, with the sectors balanced by the cost of their tours
+//! instead of by load; Bartholdi and Platzman, Management Science 1988, for the curve as a tour.
+//!
+//! A sweep beats cutting one giant tour on farms: the routes of good min-max plans are petals around the depot. Which petals
+//! depends on where the first sector begins, so the search starts from several rotations. O(n log n).
+
+use super::budget::Budget;
+use super::improve::improve_ring;
+use super::network::Network;
+use crate::geometry::Point;
+
+/// The visits by their angle around the depot, and what that order makes of them.
+pub(super) struct Sweep<'a> {
+    network: &'a Network,
+    /// Sorted by angle; the first follows the widest gap.
+    visits: Vec<u32>,
+    /// Place of each visit along a Hilbert curve over the farm.
+    curve_keys: Vec<u32>,
+}
+
+impl<'a> Sweep<'a> {
+    pub fn new(network: &'a Network) -> Self {
+        let depot = network.depot();
+        let points = &network.points[..network.num_visits];
+        let mut keyed: Vec<(f64, u32)> = points
+            .iter()
+            .zip(0..)
+            .map(|(point, visit)| (pseudo_angle(point.x - depot.x, point.y - depot.y), visit))
+            .collect();
+        keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let first = place_after_widest_gap(&keyed);
+        keyed.rotate_left(first);
+        Self { network, visits: keyed.into_iter().map(|entry| entry.1).collect(), curve_keys: curve_keys(points) }
+    }
+
+    /// Routes from sectors whose first begins at `rotation` (0 to 1) of a mean sector, balanced by the length of their curves.
+    pub fn sectors(&self, rotation: f64) -> Vec<Vec<u32>> {
+        let (num_visits, num_routes) = (self.network.num_visits, self.network.num_routes);
+        let start = (rotation * num_visits as f64 / num_routes as f64) as usize;
+        let mut ends: Vec<usize> = (0..=num_routes).map(|route| route * num_visits / num_routes).collect();
+        let mut routes = self.tour_sectors(start, &ends);
+        for _ in 0..NUM_BALANCINGS {
+            let costs: Vec<f64> = routes.iter().map(|route| self.network.route_cost(route)).collect();
+            ends = balanced_ends(&ends, &costs);
+            routes = self.tour_sectors(start, &ends);
+        }
+        routes
+    }
+
+    fn tour_sectors(&self, start: usize, ends: &[usize]) -> Vec<Vec<u32>> {
+        let tour = |range: &[usize]| {
+            let mut route: Vec<u32> =
+                (range[0]..range[1]).map(|place| self.visits[(start + place) % self.visits.len()]).collect();
+            route.sort_unstable_by_key(|&visit| (self.curve_keys[visit as usize], visit));
+            self.open_at_best_leg(&mut route);
+            route
+        };
+        ends.windows(2).map(tour).collect()
+    }
+
+    /// Rotates a closed tour of visits so that going through the depot between its last and first visit costs least.
+    fn open_at_best_leg(&self, route: &mut [u32]) {
+        let (mut best, mut best_detour) = (0, f64::INFINITY);
+        for place in 0..route.len() {
+            let (from, to) = (route[if place == 0 { route.len() - 1 } else { place - 1 }], route[place]);
+            let depot_legs = self.network.depot_legs[from as usize] + self.network.depot_legs[to as usize];
+            let detour = depot_legs - self.network.leg(from, to);
+            if detour < best_detour {
+                (best, best_detour) = (place, detour);
+            }
+        }
+        route.rotate_left(best);
+    }
+}
+
+/// Rounds of balancing; a second gained nothing that the search did not gain faster.
+const NUM_BALANCINGS: usize = 1;
+
+/// Improves each route on its own by 2-opt and Or-opt, and stops between two moves when the time is over.
+pub(super) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
+    for (route, visits) in routes.iter_mut().enumerate() {
+        let depot = (network.num_visits + route) as u32;
+        visits.push(depot);
+        improve_ring(network, budget, visits);
+        let place = visits.iter().position(|&node| node == depot).unwrap_or(0);
+        visits.rotate_left(place);
+        visits.remove(0);
+    }
+}
+
+/// Moves the sector ends so that each holds the same cost, were cost spread evenly within each sector.
+fn balanced_ends(ends: &[usize], costs: &[f64]) -> Vec<usize> {
+    let goal = costs.iter().sum::<f64>() / costs.len() as f64;
+    let num_visits = ends[ends.len() - 1];
+    let mut balanced = vec![0];
+    let mut sum = 0.0;
+    for (range, cost) in ends.windows(2).zip(costs) {
+        let size = range[1] - range[0];
+        for place in 0..size {
+            sum += cost / size as f64;
+            if sum >= goal * balanced.len() as f64 && balanced.len() < costs.len() {
+                balanced.push(range[0] + place + 1);
+            }
+        }
+    }
+    balanced.resize(ends.len(), num_visits);
+    balanced
+}
+
+/// Grows with the angle of `(x, y)` from 0 to 4, without trigonometry: the same on every machine.
+fn pseudo_angle(x: f64, y: f64) -> f64 {
+    let norm = x.abs() + y.abs();
+    if norm == 0.0 {
+        return 0.0;
+    }
+    let ratio = x / norm;
+    if y >= 0.0 { 1.0 - ratio } else { 3.0 + ratio }
+}
+
+fn place_after_widest_gap(keyed: &[(f64, u32)]) -> usize {
+    let last = keyed.len() - 1;
+    let (mut place, mut widest) = (0, keyed[0].0 + 4.0 - keyed[last].0);
+    for (index, pair) in keyed.windows(2).enumerate() {
+        if pair[1].0 - pair[0].0 > widest {
+            (place, widest) = (index + 1, pair[1].0 - pair[0].0);
+        }
+    }
+    place
+}
+
+/// Place of each point along a Hilbert curve over the bounding square.
+fn curve_keys(points: &[Point]) -> Vec<u32> {
+    let (mut low, mut high) = (points[0], points[0]);
+    for point in points {
+        low = Point::new(low.x.min(point.x), low.y.min(point.y));
+        high = Point::new(high.x.max(point.x), high.y.max(point.y));
+    }
+    let side = (high.x - low.x).max(high.y - low.y).max(f64::MIN_POSITIVE);
+    let scale = f64::from(CURVE_SIDE - 1) / side;
+    points
+        .iter()
+        .map(|point| curve_key(((point.x - low.x) * scale) as u32, ((point.y - low.y) * scale) as u32))
+        .collect()
+}
+
+/// Cells along one side of the Hilbert curve.
+const CURVE_SIDE: u32 = 1 << 16;
+
+/// Position of a cell on the Hilbert curve.
+fn curve_key(mut x: u32, mut y: u32) -> u32 {
+    let mut key = 0;
+    let mut side = CURVE_SIDE / 2;
+    while side > 0 {
+        let (right, upper) = (u32::from(x & side > 0), u32::from(y & side > 0));
+        key += side * side * ((3 * right) ^ upper);
+        if upper == 0 {
+            if right == 1 {
+                x = !x & (CURVE_SIDE - 1);
+                y = !y & (CURVE_SIDE - 1);
+            }
+            std::mem::swap(&mut x, &mut y);
+        }
+        side >>= 1;
+    }
+    key
+}

@@ -1,0 +1,37 @@
+//! Chains on several threads that meet to share the best plan.
+//!
+//! Threads wait for each other at fixed shares of the effort, so that with an iteration limit the outcome depends on the number
+//! of threads, but not on their speed.
+
+use super::anneal::Chain;
+use super::state::State;
+use std::sync::{Barrier, Mutex, PoisonError};
+
+/// Where the threads of one search meet.
+pub(super) struct Meeting {
+    barrier: Barrier,
+    /// Value and plan each thread brings.
+    plans: Mutex<Vec<Option<(f64, State)>>>,
+}
+
+impl Meeting {
+    pub fn new(num_threads: usize) -> Self {
+        Self { barrier: Barrier::new(num_threads), plans: Mutex::new(vec![None; num_threads]) }
+    }
+
+    /// Every thread that brought a worse plan goes on from the best one; the first of equals wins.
+    pub fn share_best(&self, thread: usize, chain: &mut Chain) {
+        let lock = || self.plans.lock().unwrap_or_else(PoisonError::into_inner);
+        if lock().len() == 1 {
+            return;
+        }
+        lock()[thread] = Some((chain.best_value, chain.best.clone()));
+        self.barrier.wait();
+        let best = lock().iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0)).cloned();
+        if let Some((value, state)) = best.filter(|best| best.0 < chain.best_value) {
+            chain.adopt(&state);
+            debug_assert!(chain.best_value <= value);
+        }
+        self.barrier.wait();
+    }
+}

@@ -1,0 +1,211 @@
+//! Shortens the ring of one route by 2-opt and Or-opt over neighbour lists.
+//!
+//! Source: Bentley, Fast Algorithms for Geometric Traveling Salesman Problems, ORSA J. Computing 1992: neighbour lists,
+//! don't-look bits kept as a queue, reversal of the shorter side. Rings are arrays here, unlike in [`super::state`], because
+//! 2-opt turns paths round.
+
+use super::budget::Budget;
+use super::network::Network;
+
+/// Neighbours tried per visit: on a lattice, the ring of eight and two more.
+const NUM_TRIED: usize = 10;
+/// Place of a visit that is not on this ring.
+const ELSEWHERE: u32 = u32::MAX;
+/// Visits looked at between two looks at the clock.
+const VISITS_PER_LOOK: usize = 32;
+/// What a move must gain, relative to the leg it starts from: above rounding, so that moves cannot undo each other for ever.
+const MIN_GAIN: f64 = 1e-9;
+
+struct Ring<'a> {
+    network: &'a Network,
+    order: &'a mut [u32],
+    /// Place of every node in `order`, or [`ELSEWHERE`].
+    position: Vec<u32>,
+    queue: Vec<u32>,
+    is_queued: Vec<bool>,
+}
+
+/// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
+/// it or the time is over.
+pub(super) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [u32]) {
+    if order.len() < 5 {
+        return;
+    }
+    let mut position = vec![ELSEWHERE; network.points.len()];
+    for (place, &node) in order.iter().enumerate() {
+        position[node as usize] = place as u32;
+    }
+    let queue: Vec<u32> = order.iter().rev().copied().filter(|&node| (node as usize) < network.num_visits).collect();
+    let is_queued = vec![true; network.points.len()];
+    let mut ring = Ring { network, order, position, queue, is_queued };
+    let mut num_looked_at = 0;
+    while let Some(visit) = ring.queue.pop() {
+        ring.is_queued[visit as usize] = false;
+        while ring.two_opt(visit) || ring.or_opt(visit) {}
+        num_looked_at += 1;
+        if num_looked_at.is_multiple_of(VISITS_PER_LOOK) && budget.is_time_over() {
+            return;
+        }
+    }
+}
+
+impl Ring<'_> {
+    fn next(&self, visit: u32) -> u32 {
+        let place = self.position[visit as usize] as usize + 1;
+        self.order[if place == self.order.len() { 0 } else { place }]
+    }
+
+    fn previous(&self, visit: u32) -> u32 {
+        let place = self.position[visit as usize] as usize;
+        self.order[if place == 0 { self.order.len() - 1 } else { place - 1 }]
+    }
+
+    fn push(&mut self, nodes: &[u32]) {
+        for &visit in nodes {
+            if (visit as usize) < self.network.num_visits && !self.is_queued[visit as usize] {
+                self.is_queued[visit as usize] = true;
+                self.queue.push(visit);
+            }
+        }
+    }
+
+    /// a-b, c-d become a-c, b-d, on either side of `a`.
+    fn two_opt(&mut self, a: u32) -> bool {
+        let network = self.network;
+        for forward in [true, false] {
+            let b = if forward { self.next(a) } else { self.previous(a) };
+            let leg_ab = network.leg(a, b);
+            for neighbour in network.neighbours(a).iter().take(NUM_TRIED) {
+                if neighbour.leg >= leg_ab {
+                    break;
+                }
+                let c = neighbour.node;
+                if self.position[c as usize] == ELSEWHERE {
+                    continue;
+                }
+                let d = if forward { self.next(c) } else { self.previous(c) };
+                let gain = leg_ab + network.leg(c, d) - neighbour.leg - network.leg(b, d);
+                if gain > MIN_GAIN * leg_ab {
+                    if forward {
+                        self.reverse(b, c)
+                    } else {
+                        self.reverse(c, b)
+                    };
+                    self.push(&[a, b, c, d]);
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// The one to three visits from `a` on (either way) move between a near neighbour and one of its neighbours on the tour.
+    fn or_opt(&mut self, a: u32) -> bool {
+        let network = self.network;
+        let size = self.order.len();
+        for forward in [true, false] {
+            let step = |ring: &Self, visit| if forward { ring.next(visit) } else { ring.previous(visit) };
+            let before = if forward { self.previous(a) } else { self.next(a) };
+            let leg_before = network.leg(before, a);
+            let mut end = a;
+            for length in 1..=3usize.min(size - 3) {
+                if length > 1 {
+                    end = step(self, end);
+                }
+                let after = step(self, end);
+                let removed = leg_before + network.leg(end, after) - network.leg(before, after);
+                if removed <= MIN_GAIN * leg_before {
+                    continue;
+                }
+                for neighbour in network.neighbours(a).iter().take(NUM_TRIED) {
+                    if neighbour.leg >= removed {
+                        break;
+                    }
+                    let c = neighbour.node;
+                    if self.position[c as usize] == ELSEWHERE || self.is_within(c, a, length, forward) {
+                        continue;
+                    }
+                    // `a` lands beside `c`, `end` beside the neighbour of `c` on the other side.
+                    for d in [self.next(c), self.previous(c)] {
+                        if self.is_within(d, a, length, forward) {
+                            continue;
+                        }
+                        let added = neighbour.leg + network.leg(end, d) - network.leg(c, d);
+                        if removed - added > MIN_GAIN * leg_before {
+                            self.move_segment(a, end, length, forward, c, d);
+                            self.push(&[before, after, a, end, c, d]);
+                            return true;
+                        }
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether `visit` is one of the `length` visits from `a` on.
+    fn is_within(&self, visit: u32, a: u32, length: usize, forward: bool) -> bool {
+        let size = self.order.len();
+        let (from, place) = (self.position[a as usize] as usize, self.position[visit as usize] as usize);
+        let offset = if forward { (place + size - from) % size } else { (from + size - place) % size };
+        offset < length
+    }
+
+    /// Moves the segment a..end between the adjacent `c` and `d`, `a` beside `c`: as three reversals at most.
+    fn move_segment(&mut self, a: u32, end: u32, length: usize, forward: bool, c: u32, d: u32) {
+        let size = self.order.len();
+        let (first, last) = if forward { (a, end) } else { (end, a) };
+        // Shift everything between the segment and its new place by `length`, along the shorter way round.
+        let start = self.position[first as usize] as usize;
+        let (c_place, d_place) = (self.position[c as usize] as usize, self.position[d as usize] as usize);
+        let c_is_left = (c_place + 1) % size == d_place;
+        let left = if c_is_left { c_place } else { d_place };
+        let segment: [u32; 3] = std::array::from_fn(|offset| self.order[(start + offset.min(length - 1)) % size]);
+        debug_assert_eq!(segment[length - 1], last);
+        // Visits between the segment's end and `left`, going up; or between `left` and the segment's start.
+        let up = (left + size - (start + length - 1) % size) % size;
+        let down = (start + size - left - 1) % size;
+        let first_free = if up <= down {
+            for offset in 0..up {
+                let visit = self.order[(start + length + offset) % size];
+                self.put((start + offset) % size, visit);
+            }
+            (start + up) % size
+        } else {
+            for offset in 1..=down {
+                let visit = self.order[(start + size - offset) % size];
+                self.put((start + length + size - offset) % size, visit);
+            }
+            (left + 1) % size
+        };
+        // `a` must end beside `c`.
+        let keeps_direction = (segment[0] == a) == c_is_left;
+        for offset in 0..length {
+            let visit = if keeps_direction { segment[offset] } else { segment[length - 1 - offset] };
+            self.put((first_free + offset) % size, visit);
+        }
+    }
+
+    fn put(&mut self, place: usize, visit: u32) {
+        self.order[place] = visit;
+        self.position[visit as usize] = place as u32;
+    }
+
+    /// Reverses the path first..last, or what lies outside it if that is shorter: the same cyclic tour.
+    fn reverse(&mut self, first: u32, last: u32) {
+        let size = self.order.len();
+        let (mut low, mut high) = (self.position[first as usize] as usize, self.position[last as usize] as usize);
+        let mut inside = (high + size - low) % size + 1;
+        if 2 * inside > size {
+            (low, high) = ((high + 1) % size, (low + size - 1) % size);
+            inside = size - inside;
+        }
+        for _ in 0..inside / 2 {
+            let (one, other) = (self.order[low], self.order[high]);
+            self.put(low, other);
+            self.put(high, one);
+            low = if low + 1 == size { 0 } else { low + 1 };
+            high = if high == 0 { size - 1 } else { high - 1 };
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! The min-max optimiser: minimises the costliest route, then the total.
+//!
+//! Problem: one depot, m equal drones, every visit once; the single-depot min-max multiple travelling salesman problem, with
+//! service times and a fixed time per leg. Costs are seconds, which in a research instance are length units.
+//!
+//! Method ([`solve`]): balanced sectors around the depot ([`construct`]), each toured and improved by 2-opt and Or-opt
+//! ([`improve`]); if the effort allows, a race of several rotations of the sectors; from the winner, ruin ([`ruin`]) and
+//! recreate ([`recreate`]) under annealing ([`anneal`]), first for the longest route, then for the total with the longest route
+//! as a limit. Threads share their best plans now and then ([`cooperate`]).
+//!
+//! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes ([`state`]); memory
+//! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
+
+mod anneal;
+mod budget;
+mod construct;
+mod cooperate;
+mod improve;
+mod network;
+mod recreate;
+mod ruin;
+mod state;
+
+use crate::problem::Problem;
+use anneal::{Chain, Schedule};
+use budget::Budget;
+pub use budget::{Clock, Progress, Watch};
+use construct::{Sweep, improve_routes};
+use cooperate::Meeting;
+use network::Network;
+use recreate::Objective;
+use state::State;
+
+/// What the search minimises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Goal {
+    /// The longest route, then the total.
+    #[default]
+    Max,
+    /// The total, within the time a drone can be under way.
+    Total,
+}
+
+/// What to search for, and how long. Without an iteration limit, a clock or a watch that ends it, a search never ends.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// Same seed, iterations and threads: same plan.
+    pub seed: u64,
+    /// Steps per thread.
+    pub max_iterations: Option<u64>,
+    /// Share of the time limit used so far.
+    pub clock: Option<Clock<'a>>,
+    /// Told how far the first thread is; may end the search.
+    pub watch: Option<Watch<'a>>,
+    /// Chains that search side by side; at least 1.
+    pub num_threads: usize,
+    /// What to minimise.
+    pub goal: Goal,
+    /// How much the longest route may grow, as a share, to shorten the total.
+    pub slack: f64,
+    /// A plan to begin with: visit indices per route.
+    pub start: Option<&'a [Vec<usize>]>,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            max_iterations: None,
+            clock: None,
+            watch: None,
+            num_threads: 1,
+            goal: Goal::Max,
+            slack: 0.0,
+            start: None,
+        }
+    }
+}
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Visit indices per route in flying order; every visit once, no route empty.
+    pub routes: Vec<Vec<usize>>,
+    /// Steps made by the first thread.
+    pub num_iterations: u64,
+}
+
+/// Share of the effort at which the race of the starts ends.
+const RACE_END: f64 = 0.25;
+/// Shares of the effort at which threads share their best plan while they work on the longest route.
+const MEETINGS: [f64; 2] = [0.5, 0.7];
+/// Share of the effort at which the work on the longest route ends.
+const MAX_END: f64 = 0.88;
+/// The same where the total is the goal: the balanced plan is only a start.
+const MAX_END_BEFORE_TOTAL: f64 = 0.3;
+/// Starts in a race, at most.
+const MAX_STARTS: usize = 8;
+/// Steps per visit and start below which a race gains less than it costs.
+const RACE_STEPS_PER_VISIT: f64 = 50.0;
+/// Steps that take as long as making a start, per visit.
+const START_STEPS_PER_VISIT: f64 = 0.3;
+/// Weight of the mean route beside the longest: without it, shortening any other route would not count.
+const MEAN_WEIGHT: f64 = 0.02;
+/// Temperatures relative to the longest route.
+const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
+const MAX_HEAT: (f64, f64) = (1e-2, 1e-6);
+const TOTAL_HEAT: (f64, f64) = (3e-3, 3e-6);
+
+/// Plans routes for `problem`, each of at least one visit, at most one per drone.
+///
+/// # Panics
+/// If [`Options::start`] names a visit that does not exist or misses one: check it with [`crate::evaluate::evaluate`].
+#[must_use]
+pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
+    let budget = Budget::new(options.max_iterations, options.clock, options.watch);
+    let mut network = Network::new(problem);
+    if options.start.is_none() {
+        let rough = Sweep::new(&network).sectors(0.0);
+        if budget.is_time_over() {
+            return Outcome { routes: to_indices(rough), num_iterations: 0 };
+        }
+    }
+    network.find_neighbours();
+    let search = Search { network: &network, budget: &budget, options, meeting: Meeting::new(options.num_threads) };
+    let mut chains: Vec<Chain> = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..options.num_threads)
+            .map(|thread| {
+                scope.spawn({
+                    let search = &search;
+                    move || search.run(thread)
+                })
+            })
+            .collect();
+        let first = search.run(0);
+        let rest =
+            others.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        std::iter::once(first).chain(rest).collect()
+    });
+    let num_iterations = chains[0].num_iterations;
+    chains.sort_by(|a, b| a.best_value.total_cmp(&b.best_value));
+    Outcome { routes: to_indices(chains[0].best.routes(&network)), num_iterations }
+}
+
+/// What the threads of one search share.
+struct Search<'a> {
+    network: &'a Network,
+    budget: &'a Budget<'a>,
+    options: &'a Options<'a>,
+    meeting: Meeting,
+}
+
+impl Search<'_> {
+    /// One thread's search: race, longest route, total.
+    fn run(&self, thread: usize) -> Chain {
+        let mut chain = match self.options.start {
+            Some(routes) => self.chain_from(&to_nodes(routes), thread as u64),
+            None => self.race(thread),
+        };
+        let max_end = if self.options.goal == Goal::Max { MAX_END } else { MAX_END_BEFORE_TOTAL };
+        let floor = self.network.farthest_visit_bound() * (1.0 + 1e-12);
+        let schedule = self.schedule(&chain, max_end, MAX_HEAT);
+        for until in MEETINGS.into_iter().filter(|&meeting| meeting < max_end).chain([max_end]) {
+            chain.anneal(self.network, self.budget, &schedule, until, floor);
+            self.meeting.share_best(thread, &mut chain);
+        }
+        chain.restart(self.total_objective(&chain.best));
+        let schedule = self.schedule(&chain, 1.0, TOTAL_HEAT);
+        chain.anneal(self.network, self.budget, &schedule, 1.0, 0.0);
+        chain
+    }
+
+    /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until one is left.
+    fn race(&self, thread: usize) -> Chain {
+        let sweep = Sweep::new(self.network);
+        let start = |rotation: f64, stream: u64| {
+            let mut routes = sweep.sectors(rotation);
+            improve_routes(self.network, self.budget, &mut routes);
+            self.chain_from(&routes, stream)
+        };
+        let offset = thread as f64 / self.options.num_threads as f64;
+        let begin = self.budget.share(0);
+        let mut chains = vec![start(offset, thread as u64)];
+        let start_steps = START_STEPS_PER_VISIT * self.network.num_visits as f64;
+        let start_share = self.budget.share_of_work(start_steps, begin);
+        let num_starts = (START_STEPS_PER_VISIT / RACE_STEPS_PER_VISIT / start_share) as usize;
+        let num_starts = num_starts.clamp(1, MAX_STARTS);
+        for index in 1..num_starts {
+            let rotation = index as f64 / num_starts as f64 + offset;
+            chains.push(start(rotation, (index * self.options.num_threads + thread) as u64));
+        }
+        let mut num_iterations = 0;
+        while chains.len() > 1 {
+            let begin = self.budget.share(num_iterations);
+            let num_rounds = (chains.len() as f64).log2().ceil();
+            let slice = (RACE_END - begin).max(0.0) / num_rounds / chains.len() as f64;
+            for (index, chain) in chains.iter_mut().enumerate() {
+                chain.num_iterations = num_iterations;
+                let from = begin + slice * index as f64;
+                let (hot, cold) =
+                    (RACE_HEAT.0 * chain.best.max_route_cost(), RACE_HEAT.1 * chain.best.max_route_cost());
+                let schedule = Schedule { begin: from, end: from + slice, hot, cold };
+                chain.restart(chain.objective);
+                chain.anneal(self.network, self.budget, &schedule, from + slice, 0.0);
+                num_iterations = chain.num_iterations;
+            }
+            chains.sort_by(|a, b| a.best_value.total_cmp(&b.best_value));
+            chains.truncate(chains.len().div_ceil(2));
+        }
+        let mut winner = chains.swap_remove(0);
+        winner.num_iterations = num_iterations;
+        winner
+    }
+
+    fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain {
+        let state = State::new(self.network, routes);
+        let objective = Objective {
+            max_weight: 1.0,
+            total_weight: MEAN_WEIGHT / self.network.num_routes as f64,
+            cap: f64::INFINITY,
+            target: state.max_route_cost(),
+        };
+        Chain::new(state, objective, self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP)))
+    }
+
+    /// Only the total counts, while no route may outgrow the longest one, and the slack it is given.
+    fn total_objective(&self, state: &State) -> Objective {
+        let longest = state.max_route_cost() * (1.0 + self.options.slack);
+        let cap = match self.options.goal {
+            Goal::Max => longest,
+            Goal::Total => longest.max(self.network.max_route_cost),
+        };
+        Objective { max_weight: 0.0, total_weight: 1.0, cap, target: cap }
+    }
+
+    /// From now to `end`.
+    fn schedule(&self, chain: &Chain, end: f64, (hot, cold): (f64, f64)) -> Schedule {
+        let scale = chain.best.max_route_cost();
+        Schedule { begin: self.budget.share(chain.num_iterations), end, hot: hot * scale, cold: cold * scale }
+    }
+}
+
+/// Distance between the seeds of two streams: odd, so that streams of one search never meet.
+const STREAM_STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
+fn to_nodes(routes: &[Vec<usize>]) -> Vec<Vec<u32>> {
+    routes.iter().map(|route| route.iter().map(|&visit| visit as u32).collect()).collect()
+}
+
+fn to_indices(routes: Vec<Vec<u32>>) -> Vec<Vec<usize>> {
+    let to_index = |route: Vec<u32>| route.into_iter().map(|visit| visit as usize).collect::<Vec<usize>>();
+    routes.into_iter().filter(|route| !route.is_empty()).map(to_index).collect()
+}

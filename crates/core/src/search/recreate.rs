@@ -1,0 +1,190 @@
+//! Puts removed visits back, each at its cheapest place among its neighbours.
+//!
+//! Source: greedy insertion with blinks, Christiaens and Vanden Berghe 2020, section 5.2. Changed for the min-max objective:
+//! what an insertion would push a route over the best known maximum is charged tenfold, a step ends as soon as it is sure to
+//! be rejected, and only places beside near neighbours and at the depot are tried. O(neighbours) for a visit.
+
+use super::network::Network;
+use super::ruin::Ruin;
+use super::state::{ABSENT, State, Touched};
+use crate::random::Random;
+
+/// One place in a hundred is passed over, so that a step can leave the greedy path.
+const BLINK_RATE: f64 = 0.01;
+/// What a unit of overflow over the target costs, beside the added length.
+const OVERFLOW_PRICE: f64 = 10.0;
+
+/// What a plan costs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Objective {
+    /// Weight of the longest route.
+    pub max_weight: f64,
+    /// Weight of the total.
+    pub total_weight: f64,
+    /// No route may become longer.
+    pub cap: f64,
+    /// Routes should not become longer.
+    pub target: f64,
+}
+
+impl Objective {
+    /// What `state` costs.
+    pub fn value(&self, state: &State) -> f64 {
+        self.max_weight * state.max_route_cost() + self.total_weight * state.total
+    }
+}
+
+/// Buffers of the insertion.
+#[derive(Debug)]
+pub(super) struct Recreate {
+    keyed: Vec<(f64, u32)>,
+    places_to_blink: u32,
+}
+
+struct Place {
+    after: u32,
+    leg_in: f64,
+    leg_out: f64,
+    added: f64,
+}
+
+impl Recreate {
+    pub fn new(random: &mut Random) -> Self {
+        Self { keyed: Vec::new(), places_to_blink: draw_blink(random) }
+    }
+
+    /// Inserts what `ruin` removed. Returns false, with visits still absent, once the result is sure to exceed `threshold`.
+    #[allow(clippy::too_many_arguments)]
+    pub fn insert(
+        &mut self,
+        network: &Network,
+        state: &mut State,
+        ruin: &Ruin,
+        objective: &Objective,
+        threshold: f64,
+        random: &mut Random,
+        touched: &mut Touched,
+    ) -> bool {
+        self.order(network, &ruin.removed, random);
+        let mut longest: f64 = 0.0;
+        for index in 0..self.keyed.len() {
+            let visit = self.keyed[index].1;
+            let Some(place) = self.cheapest_place(network, state, visit, objective, random) else {
+                return false;
+            };
+            state.insert(visit, place.after, place.leg_in, place.leg_out, place.added, touched);
+            let route = state.nodes[visit as usize].route;
+            longest = longest.max(state.route_costs[route as usize]);
+            // Costs only grow from here on, so that a lower bound over the threshold decides.
+            if objective.max_weight * longest + objective.total_weight * state.total > threshold {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Sorts the removed visits: at random, far from the depot first or near it first, with odds 4 : 2 : 1.
+    fn order(&mut self, network: &Network, removed: &[u32], random: &mut Random) {
+        self.keyed.clear();
+        let kind = random.below(7);
+        for &visit in removed {
+            let key = match kind {
+                0..4 => random.uniform(),
+                4..6 => -network.depot_legs[visit as usize],
+                _ => network.depot_legs[visit as usize],
+            };
+            // Insertion sort: there are about ten.
+            let mut place = self.keyed.len();
+            self.keyed.push((key, visit));
+            while place > 0 && self.keyed[place - 1].0 > key {
+                self.keyed[place] = self.keyed[place - 1];
+                place -= 1;
+            }
+            self.keyed[place] = (key, visit);
+        }
+    }
+
+    #[inline]
+    fn is_blink(&mut self, random: &mut Random) -> bool {
+        self.places_to_blink -= 1;
+        if self.places_to_blink == 0 {
+            self.places_to_blink = draw_blink(random);
+            return true;
+        }
+        false
+    }
+
+    fn cheapest_place(
+        &mut self,
+        network: &Network,
+        state: &State,
+        visit: u32,
+        objective: &Objective,
+        random: &mut Random,
+    ) -> Option<Place> {
+        let service = network.services[visit as usize];
+        let mut best_price = f64::INFINITY;
+        let mut best = Place { after: ABSENT, leg_in: 0.0, leg_out: 0.0, added: 0.0 };
+        let mut consider =
+            |best_price: &mut f64, after: u32, leg_in: f64, leg_out: f64, route: u32, leg_removed: f64| {
+                let added = leg_in + leg_out - leg_removed + service;
+                if added >= *best_price {
+                    return;
+                }
+                let cost = state.route_costs[route as usize] + added;
+                let overflow = cost - objective.target;
+                let price = if overflow > 0.0 { added + OVERFLOW_PRICE * overflow.min(added) } else { added };
+                if price < *best_price && cost <= objective.cap && !self.is_blink(random) {
+                    *best_price = price;
+                    best = Place { after, leg_in, leg_out, added };
+                }
+            };
+        let mut reach = 0.0;
+        for neighbour in network.neighbours(visit) {
+            let (leg, near) = (neighbour.leg, neighbour.node);
+            reach = leg;
+            let node = state.nodes[near as usize];
+            if node.route == ABSENT {
+                continue;
+            }
+            // A place whose other end is nearer than `near` was tried from there, so the other leg is at least as long.
+            let least = 2.0 * leg + service;
+            if least - node.leg_after < best_price {
+                let leg_out = network.leg(visit, node.next);
+                consider(&mut best_price, near, leg, leg_out, node.route, node.leg_after);
+            }
+            let leg_removed = state.nodes[node.previous as usize].leg_after;
+            if least - leg_removed < best_price {
+                let leg_in = network.leg(node.previous, visit);
+                consider(&mut best_price, node.previous, leg_in, leg, node.route, leg_removed);
+            }
+        }
+        // Beside a near neighbour the ends of the routes were tried too; others are at least `reach` away.
+        let depot_leg = network.depot_legs[visit as usize];
+        let least = depot_leg + reach + service;
+        for route in 0..network.num_routes as u32 {
+            let depot = network.num_visits as u32 + route;
+            let node = state.nodes[depot as usize];
+            if least - node.leg_after < best_price || node.next == depot {
+                consider(&mut best_price, depot, depot_leg, network.leg(visit, node.next), route, node.leg_after);
+            }
+            let leg_removed = state.nodes[node.previous as usize].leg_after;
+            if least - leg_removed < best_price {
+                consider(
+                    &mut best_price,
+                    node.previous,
+                    network.leg(node.previous, visit),
+                    depot_leg,
+                    route,
+                    leg_removed,
+                );
+            }
+        }
+        (best.after != ABSENT).then_some(best)
+    }
+}
+
+/// How many places until the next blink: uniform with the right mean, which is all that the source asks of it.
+fn draw_blink(random: &mut Random) -> u32 {
+    1 + random.below((2.0 / BLINK_RATE) as usize) as u32
+}

@@ -1,0 +1,189 @@
+//! The mutable twin of a plan: routes as linked rings of nodes, so that no step costs more on a long route.
+//!
+//! Every route is a ring through its own copy of the depot. Nodes carry the cost of the leg to their successor; routes carry
+//! their cost and size. Nothing here depends on a visit's position within its route, and nothing but the touched nodes is
+//! copied when a change is taken back: one step of the search costs O(visits touched), whatever the length of the routes.
+
+use super::network::Network;
+
+/// Route of a visit that no route makes at the moment.
+pub(super) const ABSENT: u32 = u32::MAX;
+
+/// A visit or a depot copy.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// Cost of the leg to `next`.
+    pub leg_after: f64,
+    pub previous: u32,
+    pub next: u32,
+    /// [`ABSENT`] while removed.
+    pub route: u32,
+}
+
+/// A solution under change.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub nodes: Vec<Node>,
+    /// Legs and service per route.
+    pub route_costs: Vec<f64>,
+    pub route_sizes: Vec<u32>,
+    pub total: f64,
+}
+
+/// Which parts of a state differ from the state it was copied from; members may repeat.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Touched {
+    pub nodes: Vec<u32>,
+    pub routes: Vec<u32>,
+}
+
+impl Touched {
+    pub fn clear(&mut self) {
+        self.nodes.clear();
+        self.routes.clear();
+    }
+
+    pub fn append(&mut self, other: &Self) {
+        self.nodes.extend_from_slice(&other.nodes);
+        self.routes.extend_from_slice(&other.routes);
+    }
+
+    pub fn remove_repetitions(&mut self) {
+        for members in [&mut self.nodes, &mut self.routes] {
+            members.sort_unstable();
+            members.dedup();
+        }
+    }
+}
+
+impl State {
+    /// The state of the given routes; visits not in them are absent.
+    pub fn new(network: &Network, routes: &[Vec<u32>]) -> Self {
+        let num_nodes = network.num_visits + network.num_routes;
+        let absent = Node { leg_after: 0.0, previous: ABSENT, next: ABSENT, route: ABSENT };
+        let mut state = Self {
+            nodes: vec![absent; num_nodes],
+            route_costs: vec![0.0; network.num_routes],
+            route_sizes: vec![0; network.num_routes],
+            total: 0.0,
+        };
+        for route in 0..network.num_routes {
+            state.load(network, route, routes.get(route).map_or(&[], Vec::as_slice));
+        }
+        state
+    }
+
+    fn load(&mut self, network: &Network, route: usize, visits: &[u32]) {
+        let depot = (network.num_visits + route) as u32;
+        let mut last = depot;
+        let mut cost = 0.0;
+        for &node in visits.iter().chain([&depot]) {
+            let leg = network.leg(last, node);
+            cost += leg + network.services[node as usize];
+            self.nodes[last as usize].next = node;
+            self.nodes[last as usize].leg_after = leg;
+            self.nodes[node as usize].previous = last;
+            self.nodes[node as usize].route = route as u32;
+            last = node;
+        }
+        self.route_costs[route] = cost;
+        self.route_sizes[route] = visits.len() as u32;
+        self.total += cost;
+    }
+
+    /// Visits per route in flying order; empty routes are left out.
+    pub fn routes(&self, network: &Network) -> Vec<Vec<u32>> {
+        let mut routes = Vec::with_capacity(network.num_routes);
+        for route in 0..network.num_routes {
+            let depot = (network.num_visits + route) as u32;
+            let mut visits = Vec::with_capacity(self.route_sizes[route] as usize);
+            let mut node = self.nodes[depot as usize].next;
+            while node != depot {
+                visits.push(node);
+                node = self.nodes[node as usize].next;
+            }
+            if !visits.is_empty() {
+                routes.push(visits);
+            }
+        }
+        routes
+    }
+
+    /// Cost of the longest route.
+    #[inline]
+    pub fn max_route_cost(&self) -> f64 {
+        self.route_costs.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The costliest route, the first of equals.
+    #[inline]
+    pub fn longest_route(&self) -> u32 {
+        let mut longest = 0;
+        for (route, &cost) in self.route_costs.iter().enumerate() {
+            if cost > self.route_costs[longest] {
+                longest = route;
+            }
+        }
+        longest as u32
+    }
+
+    /// Puts an absent visit between `after` and its successor, at the extra cost `added` known to the caller.
+    #[inline]
+    pub fn insert(&mut self, visit: u32, after: u32, leg_in: f64, leg_out: f64, added: f64, touched: &mut Touched) {
+        let Node { next, route, .. } = self.nodes[after as usize];
+        self.nodes[visit as usize] = Node { leg_after: leg_out, previous: after, next, route };
+        let before = &mut self.nodes[after as usize];
+        before.next = visit;
+        before.leg_after = leg_in;
+        self.nodes[next as usize].previous = visit;
+        self.route_costs[route as usize] += added;
+        self.route_sizes[route as usize] += 1;
+        self.total += added;
+        touched.nodes.extend([visit, after, next]);
+        touched.routes.push(route);
+    }
+
+    /// Takes out the `count` visits from `first` on, which must lie on one route without its depot; appends them to `removed`.
+    pub fn remove_string(
+        &mut self,
+        network: &Network,
+        first: u32,
+        count: usize,
+        removed: &mut Vec<u32>,
+        touched: &mut Touched,
+    ) {
+        let Node { previous, route, .. } = self.nodes[first as usize];
+        let mut saved = self.nodes[previous as usize].leg_after;
+        let mut visit = first;
+        for _ in 0..count {
+            let node = &mut self.nodes[visit as usize];
+            node.route = ABSENT;
+            saved += node.leg_after + network.services[visit as usize];
+            removed.push(visit);
+            touched.nodes.push(visit);
+            visit = node.next;
+        }
+        let leg = network.leg(previous, visit);
+        let before = &mut self.nodes[previous as usize];
+        before.next = visit;
+        before.leg_after = leg;
+        self.nodes[visit as usize].previous = previous;
+        self.route_costs[route as usize] -= saved - leg;
+        self.route_sizes[route as usize] -= count as u32;
+        self.total -= saved - leg;
+        touched.nodes.extend([previous, visit]);
+        touched.routes.push(route);
+    }
+
+    /// Copies what was touched from `other`.
+    pub fn copy_touched(&mut self, other: &Self, touched: &Touched) {
+        for &node in &touched.nodes {
+            self.nodes[node as usize] = other.nodes[node as usize];
+        }
+        for &route in &touched.routes {
+            self.route_costs[route as usize] = other.route_costs[route as usize];
+            self.route_sizes[route as usize] = other.route_sizes[route as usize];
+        }
+        self.total = other.total;
+    }
+}
