@@ -1,5 +1,5 @@
 from collections.abc import Sequence
-from typing import final
+from typing import Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,3 +63,6 @@ class LocalFrame:
     def to_geographic(self, local_m: NDArray[np.float64]) -> NDArray[np.float64]: ...
 
 def evaluate(problem: Problem, routes: Sequence[Sequence[int]]) -> Plan: ...
+def generate(
+    num_ponds: int, seed: int, variant: Literal["authors", "paper"] = "authors"
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]: ...

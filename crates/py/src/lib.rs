@@ -5,6 +5,7 @@
 
 mod error;
 mod evaluate;
+mod generate;
 mod plan;
 mod problem;
 mod travel;
@@ -16,6 +17,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::evaluate::evaluate;
+    #[pymodule_export]
+    use crate::generate::generate;
     #[pymodule_export]
     use crate::plan::Plan;
     #[pymodule_export]
