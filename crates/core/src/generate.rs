@@ -37,14 +37,18 @@ pub struct ResearchFarm {
     pub spacing: f64,
 }
 
+/// Far beyond any farm, and far below what exhausts the memory.
+const MAX_PONDS: usize = 10_000_000;
+
 /// Draws a farm with `num_ponds` ponds. The farm depends on the number of ponds, the variant and the seed only.
 ///
 /// # Errors
-/// [`InvalidInput`] if no pond is asked for.
+/// [`InvalidInput`] if no pond is asked for, or more than 10 million.
 pub fn generate(num_ponds: usize, variant: Variant, seed: u64) -> Result<ResearchFarm, InvalidInput> {
     let mut faults = Faults::default();
-    if num_ponds == 0 {
-        faults.add("num_ponds", "a farm of no ponds cannot be drawn", "ask for at least one pond");
+    if !(1..=MAX_PONDS).contains(&num_ponds) {
+        let message = format!("{num_ponds} ponds cannot be drawn");
+        faults.add("num_ponds", message, &format!("ask for 1 to {MAX_PONDS} ponds"));
     }
     faults.into_result(())?;
     let mut random = Random::new(seed);
@@ -261,8 +265,11 @@ mod tests {
     }
 
     #[test]
-    fn a_farm_needs_a_pond() {
-        assert_eq!(generate(0, Variant::Authors, 1).unwrap_err().faults[0].path, "num_ponds");
+    fn a_farm_has_at_least_one_pond_and_at_most_10_million() {
+        for num_ponds in [0, 10_000_001, usize::MAX] {
+            let error = generate(num_ponds, Variant::Authors, 1).unwrap_err();
+            assert_eq!(error.faults[0].path, "num_ponds");
+        }
     }
 
     /// A tent with its floor, which enclose a hole around (6, 3).

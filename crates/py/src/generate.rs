@@ -14,7 +14,7 @@ type Farm<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'p
 /// Parameters
 /// ----------
 /// num_ponds
-///     At least 1.
+///     1 to 10 million.
 /// seed
 ///     0 to 2**64 - 1.
 /// variant
@@ -28,7 +28,7 @@ type Farm<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'p
 /// Raises
 /// ------
 /// InvalidInput
-///     If no pond is asked for.
+///     If the number of ponds is out of range.
 /// ValueError
 ///     If there is no such variant.
 #[pyfunction]
