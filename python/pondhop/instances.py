@@ -124,7 +124,12 @@ def read_farms(path: str | Path) -> list[ResearchFarm]:
 
 
 def write_farms(path: str | Path, farms: Iterable[ResearchFarm]) -> None:
-    """Write farms as `read_farms` reads them, a line each; every coordinate comes back to the last bit."""
+    """Write farms as `read_farms` reads them; every coordinate comes back to the last bit."""
+    Path(path).write_text(farms_json(farms), encoding="utf-8")
+
+
+def farms_json(farms: Iterable[ResearchFarm]) -> str:
+    """Return the JSON list that `read_farms` reads, a farm a line."""
     lines = []
     for farm in farms:
         values: dict[str, object] = {"depot": farm.depot.tolist(), "ponds": farm.ponds.tolist()}
@@ -133,7 +138,7 @@ def write_farms(path: str | Path, farms: Iterable[ResearchFarm]) -> None:
         if farm.spacing is not None:
             values["spacing"] = farm.spacing
         lines.append(json.dumps(values, separators=(",", ":")))
-    Path(path).write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8")
+    return "[\n" + ",\n".join(lines) + "\n]\n"
 
 
 def read_tsplib(path: str | Path) -> ResearchFarm:
