@@ -30,7 +30,9 @@ def used_modules(source: str) -> set[str]:
 
 
 def test_the_parser_sees_every_form_of_use() -> None:
-    source = "use crate::plan::Plan;\nuse crate::{error::{Fault, X}, travel};\nlet x = crate::problem::f(); // crate::hpp\n"
+    source = (
+        "use crate::plan::Plan;\nuse crate::{error::{Fault, X}, travel};\nlet x = crate::problem::f(); // crate::hpp\n"
+    )
     assert used_modules(source) == {"plan", "error", "travel", "problem"}
 
 

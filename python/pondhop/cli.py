@@ -25,7 +25,7 @@ from pondhop.errors import Fault, InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from pondhop.farm import LonLat
+    from pondhop.farm_features import LonLat
     from pondhop.fleet import Fleet, SamplingStyle
     from pondhop.instances import ResearchFarm
     from pondhop.solutionfile import Judgement
@@ -152,7 +152,7 @@ def plan(
     else:
         from pondhop import tables
 
-        tables.print_farm_plan(farm_plan, is_fleet_assumed=fleet is None)
+        tables.print_farm_plan(farm_plan)
         typer.echo(
             f"Written to {output}: plan.json, plan.geojson, missions/" + (", plan.png, plan.svg" if figure else "")
         )
@@ -230,7 +230,7 @@ def evaluate(
         if as_json:
             typer.echo(plans.read_text(), nl=False)
         else:
-            tables.print_farm_plan(farm_plan, is_fleet_assumed=False)
+            tables.print_farm_plan(farm_plan)
         is_feasible = farm_plan.solution.plan.is_feasible
     else:
         judgements = _judgements(plans, farms, routes)

@@ -16,7 +16,7 @@ MAX_ROWS = 20
 """Of a table with a row a farm; beyond it only the averages are printed."""
 
 
-def print_farm_plan(farm_plan: FarmPlan, *, is_fleet_assumed: bool) -> None:
+def print_farm_plan(farm_plan: FarmPlan) -> None:
     """Print the routes of a farm's plan, what it rests on and how good it is."""
     console = Console(highlight=False)
     solution, farm = farm_plan.solution, farm_plan.farm
@@ -44,7 +44,7 @@ def print_farm_plan(farm_plan: FarmPlan, *, is_fleet_assumed: bool) -> None:
         f"routes cross {separation.num_crossings} times."
     )
     console.print(f"Planner {solution.planner}, seed {solution.seed}, {1e3 * solution.elapsed_s:.2f} ms.")
-    _print_assumptions(console, farm_plan, is_fleet_assumed=is_fleet_assumed)
+    _print_assumptions(console, farm_plan)
     for violation in plan.violations:
         console.print(f"Violation: {violation}", style="bold red")
 
@@ -99,13 +99,15 @@ def _averages_table(title: str, longest: Sequence[float], totals: Sequence[float
     return table
 
 
-def _print_assumptions(console: Console, farm_plan: FarmPlan, *, is_fleet_assumed: bool) -> None:
+def _print_assumptions(console: Console, farm_plan: FarmPlan) -> None:
     fleet = farm_plan.fleet
-    source = "Assumed, not measured (give --fleet fleet.toml)" if is_fleet_assumed else "Fleet"
     console.print(
-        f"{source}: {fleet.speed_m_s:g} m/s, {fleet.transit_height_m:g} m high, "
-        f"{fleet.sampling} with {fleet.service_s:.1f} s a pond, {fleet.leg_stop_s:g} s a leg to stop and start."
+        f"Fleet: {fleet.speed_m_s:g} m/s, {fleet.transit_height_m:g} m high, {fleet.sampling} with "
+        f"{fleet.service_s:.1f} s a pond, {fleet.leg_stop_s:g} s a leg to stop and start."
     )
+    if fleet.assumptions:
+        names = ", ".join(fleet.assumptions)
+        console.print(f"Assumed, not measured: {names}. Say what is true of your drones in a --fleet file.")
     for note in farm_plan.farm.notes:
         console.print(f"Note: {note}")
 
