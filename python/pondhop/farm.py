@@ -304,9 +304,7 @@ class _FarmReader:
                 self.faults.append(Fault(place, message, "correct it, or remove it to sample the middle"))
                 return
             if offset_m > 0.0:
-                self.source.notes.append(
-                    f"{feature.place}: the sampling point lies {offset_m:.1f} m outside the outline."
-                )
+                self.offsets_m[feature.place] = offset_m
         pond_id = self._id(feature)
         self.ponds.append(Pond(pond_id, sampling_point or farm_geometry.point_inside(outline), outline, service_s))
         self.pond_features.append(feature)

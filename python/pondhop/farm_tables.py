@@ -41,7 +41,7 @@ HEADER_ACTION = "name the columns in the first line, as in: pond,lon,lat"
 
 @dataclass(frozen=True)
 class _Columns:
-    """Which column holds what; ``corners`` are (longitude, latitude) pairs of column indices: four, or one for a point."""
+    """Which column holds what: ``corners`` has column indices of longitude and latitude, four times or for one point."""
 
     names: tuple[str, ...]
     corners: tuple[tuple[int, int], ...]
