@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import pytest
 
+import pondhop
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(
@@ -74,3 +76,16 @@ def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text()):
         if "://" not in target:
             assert (page.parent / target).exists(), f"{page.relative_to(ROOT)} links to {target}"
+
+
+def test_the_python_reference_names_everything_public() -> None:
+    page = (ROOT / "docs" / "reference" / "python.md").read_text()
+    named = set(re.findall(r"\w+", page))
+    assert {name for name in pondhop.__all__ if not name.startswith("_")} <= named
+    assert all(hasattr(pondhop, name) for name in pondhop.__all__)
+
+
+def test_the_glossary_is_sorted_and_has_no_word_twice() -> None:
+    rows = re.findall(r"^\| ([^|]+?) \|", (ROOT / "docs" / "glossary.md").read_text(), flags=re.MULTILINE)
+    words = [row for row in rows if row != "word"]
+    assert words == sorted(set(words))

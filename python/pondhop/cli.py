@@ -39,6 +39,7 @@ app = typer.Typer(
     name="pondhop",
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
+    add_completion=False,
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
