@@ -277,3 +277,8 @@ def test_the_reference_is_what_help_says() -> None:
     generated = subprocess.run([*command, *title], capture_output=True, text=True, check=True).stdout
     page = (ROOT / "docs" / "reference" / "cli.md").read_text()
     assert page.strip() == generated.strip(), "run: make docs"
+
+
+def test_help_names_every_planner(run: Run) -> None:
+    help_text = run("solve", "--help").out
+    assert all(name in help_text for name in planners.PLANNERS)

@@ -86,6 +86,8 @@ def _pondhop(
 
     - `pondhop generate-farm --ponds 120 --at -90.9,33.4 -o farm.geojson`
     - `pondhop plan farm.geojson --drones 5 -o tonight`
+
+    Exit codes: 0 done, 2 invalid input, 3 infeasible with `--require-feasible`, 1 a bug.
     """
     if version:
         from pondhop import __version__
@@ -178,7 +180,15 @@ def solve(
     - `pondhop solve farms.json --routes 5 -o plans.json`
     - `pondhop solve kroa200.tsp --routes 3 --planner hpp --seed 7`
 
-    `elapsed_s` is the time from coordinates to finished routes; reading and writing files is not in it.
+    The fields of an object:
+
+    - `index` of the farm in the file, `planner`, `seed`
+    - `elapsed_s`: wall time from coordinates to finished routes; reading and writing files is not in it
+    - `routes`: 0-based pond indices in flying order, the depot implied at both ends
+    - `route_lengths`, `max_route_length`, `total_length` in the units of the farm
+    - `lower_bound`: no plan has a shorter longest route
+
+    Every pond is in exactly one route, and there are at most `--routes` of them.
     """
     from pondhop import planners
     from pondhop.solutionfile import solutions_json
