@@ -7,6 +7,7 @@ BIN := $(VENV)/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml)
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+export PIP_QUIET := 1
 
 .DEFAULT_GOAL := help
 .PHONY: help build demo test check bench docs pins clean
@@ -58,6 +59,6 @@ Cargo.lock: Cargo.pins Cargo.toml crates/core/Cargo.toml crates/py/Cargo.toml
 $(VENV)/installed: Cargo.lock $(RUST_SOURCES) pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "pondhop needs Python 3.11 or newer; set PYTHON=")'
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet maturin
+	$(BIN)/pip install maturin
 	$(BIN)/maturin develop --release --locked --quiet --extras plot,dev
 	@touch $@
