@@ -10,6 +10,7 @@
 //! 6. [`travel`]: what a leg costs, and the local metric frame of a farm on the globe.
 //! 7. [`plan`]: the immutable result: routes, schedule, violations.
 //! 8. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
+//! 9. [`separation`]: how well a plan keeps the drones apart.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -20,4 +21,5 @@ pub mod geometry;
 pub mod plan;
 pub mod problem;
 pub mod random;
+pub mod separation;
 pub mod travel;

@@ -8,6 +8,7 @@ mod evaluate;
 mod generate;
 mod plan;
 mod problem;
+mod separation;
 mod travel;
 
 use pyo3::prelude::*;
@@ -23,6 +24,8 @@ mod _core {
     use crate::plan::Plan;
     #[pymodule_export]
     use crate::problem::Problem;
+    #[pymodule_export]
+    use crate::separation::{Separation, separation};
     #[pymodule_export]
     use crate::travel::LocalFrame;
 
