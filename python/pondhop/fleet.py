@@ -65,6 +65,8 @@ class Fleet:
         How a pond is sampled: ``hover-dip`` lowers a probe on a line, ``splashdown`` lands on the water.
     dwell_s
         Time the probe stays in the water.
+    dip_height_m
+        Height above ground at which a drone holds while its probe hangs in the water (``hover-dip``).
     max_route_length_m, max_route_duration_s
         What one drone can fly; ``None`` where nothing limits it.
     assumptions
@@ -83,6 +85,7 @@ class Fleet:
     leg_stop_s: float = 3.0
     sampling: SamplingStyle = "hover-dip"
     dwell_s: float = 5.0
+    dip_height_m: float = 2.0
     max_route_length_m: float | None = None
     max_route_duration_s: float | None = None
     assumptions: tuple[str, ...] = field(default=_ASSUMABLE, compare=False, kw_only=True)
