@@ -104,7 +104,7 @@ def test_evaluate_judges_any_plans(run: Run, tmp_path: Path) -> None:
     command = ("evaluate", tmp_path / "plans.json", "--farms", tmp_path / "farms.json", "--routes", 2)
     first, second = json.loads(run(*command, "--json").out)
     assert (first["max_route_length"], first["total_length"], first["is_feasible"]) == (20.0, 30.0, True)
-    assert first["gap"] == pytest.approx(20.0 / first["lower_bound"] - 1.0)
+    assert first["gap_percent"] == pytest.approx(100.0 * (20.0 / first["lower_bound"] - 1.0))
     assert first["lower_bound"] >= 20.0 - 1e-9
     assert not second["is_feasible"]
     assert len(second["violations"]) == 2
@@ -140,8 +140,9 @@ def test_plan_writes_everything_a_crew_needs(run: Run, tmp_path: Path) -> None:
     assert "No plan has a longest route below" in ran.out
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written == {"plan.json", "plan.geojson", "missions"}
-    missions = [path.suffix for path in (tmp_path / "out" / "missions").iterdir()]
-    assert sorted(missions) == [".plan"] * 3 + [".waypoints"] * 3
+    missions = {path.name for path in (tmp_path / "out" / "missions").iterdir()}
+    drones = {f"drone-{drone}.{kind}" for drone in (1, 2, 3) for kind in ("plan", "waypoints")}
+    assert missions == drones | {"README.txt"}
 
 
 def test_plan_as_json_is_the_plan_file(run: Run, tmp_path: Path) -> None:
@@ -173,7 +174,23 @@ def test_an_infeasible_plan_is_a_result(run: Run, tmp_path: Path) -> None:
     ran = run(*command)
     assert ran.code == 0
     assert "Violation" in ran.out
+    assert ran.err.startswith("No mission was written, because this plan cannot be flown\n  1. ")
     assert run(*command, "--require-feasible").code == 3
+    with_json = run(*command, "--json")
+    assert not json.loads(with_json.out)["summary"]["is_feasible"]
+    assert json.loads(with_json.err)["status"] == "no_missions"
+
+
+def test_nothing_of_an_earlier_plan_stays_to_be_flown(run: Run, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert run("plan", FARM, "--drones", 3, "-o", out).code == 0
+    assert len(list(out.glob("missions/*.plan"))) == 3
+    assert (out / "plan.png").exists()
+    fleet = tmp_path / "fleet.toml"
+    fleet.write_text("num_drones = 3\nmax_route_duration_s = 60.0\n")
+    assert run("plan", FARM, "--fleet", fleet, "--no-figure", "-o", out).code == 0
+    left = {path.suffix for path in out.rglob("*") if path.is_file()}
+    assert not {".plan", ".waypoints", ".png", ".svg"} & left
 
 
 def test_generate_is_seeded(run: Run, tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from pondhop.farm_features import LonLat
     from pondhop.fleet import Fleet, SamplingStyle
     from pondhop.instances import ResearchFarm
+    from pondhop.planfile import FarmPlan
     from pondhop.solutionfile import Judgement
 
 EXIT_BUG = 1
@@ -63,13 +64,13 @@ def main() -> None:
     try:
         app(arguments, prog_name="pondhop")
     except InvalidInput as error:
-        _print_faults(error.faults, as_json="--json" in arguments)
+        _print_invalid_input(error.faults, "--json" in arguments)
         sys.exit(EXIT_INVALID_INPUT)
     except OSError as error:
         if error.filename is None:
             _exit_with_bug(error, arguments)
         fault = Fault(str(error.filename), error.strerror or str(error), "check the path, its permissions and the disk")
-        _print_faults((fault,), as_json="--json" in arguments)
+        _print_invalid_input((fault,), "--json" in arguments)
         sys.exit(EXIT_INVALID_INPUT)
     except Exception as error:  # noqa: BLE001 - the last resort: a user never sees a traceback unasked
         _exit_with_bug(error, arguments)
@@ -127,39 +128,44 @@ def plan(
 
     Everything wrong with the farm file is reported at once, each fault with its place and its remedy.
     """
-    from pondhop import missions, planfile, planners
+    from pondhop import planfile, planners
     from pondhop.farm import read_farm
 
     if figure:
         _require_matplotlib()
-    read_fleet = _fleet(drones, fleet, sampling)
+    chosen_fleet = _fleet(drones, fleet, sampling)
     with _progress("Planning", total=4 if figure else 3) as advance:
         read = read_farm(farm, depot=_lonlat("--depot", depot) if depot is not None else None)
         advance()
         farm_plan = planners.plan(
-            read, read_fleet, planner=planner, seed=seed, time_limit_s=time_limit_s, threads=threads
+            read, chosen_fleet, planner=planner, seed=seed, time_limit_s=time_limit_s, threads=threads
         )
         advance()
         output.mkdir(parents=True, exist_ok=True)
         planfile.write_plan_json(output / "plan.json", farm_plan)
         planfile.write_plan_geojson(output / "plan.geojson", farm_plan)
-        missions.write_missions(output / "missions", farm_plan)
+        faults = _write_missions(output / "missions", farm_plan)
         advance()
         if figure:
             from pondhop import plot as figures
 
             figures.save_figure(figures.plot_plan(farm_plan), output / "plan")
             advance()
+        else:
+            for name in ("plan.png", "plan.svg"):
+                (output / name).unlink(missing_ok=True)
     if as_json:
-        typer.echo((output / "plan.json").read_text(), nl=False)
+        typer.echo((output / "plan.json").read_text(encoding="utf-8"), nl=False)
     else:
         from pondhop import tables
 
         tables.print_farm_plan(farm_plan)
-        typer.echo(
-            f"Written to {output}: plan.json, plan.geojson, missions/" + (", plan.png, plan.svg" if figure else "")
-        )
-    if require_feasible and not farm_plan.solution.plan.is_feasible:
+        written = ["plan.json", "plan.geojson", *(() if faults else ["missions/"])]
+        written += ["plan.png", "plan.svg"] if figure else []
+        typer.echo(f"Written to {output}: {', '.join(written)}")
+    if faults:
+        _print_faults(faults, "no_missions", "No mission was written, because this plan cannot be flown", as_json)
+    if require_feasible and (faults or not farm_plan.solution.plan.is_feasible):
         raise typer.Exit(EXIT_INFEASIBLE)
 
 
@@ -352,6 +358,17 @@ def _fleet(num_drones: int | None, path: Path | None, sampling: SamplingStyle | 
     return fleet if sampling is None else replace(fleet, sampling=sampling)
 
 
+def _write_missions(folder: Path, farm_plan: FarmPlan) -> tuple[Fault, ...]:
+    """Write the missions; return what keeps the plan from being flown, which like every broken rule is a result."""
+    from pondhop import missions
+
+    try:
+        missions.write_missions(folder, farm_plan)
+    except InvalidInput as error:
+        return error.faults
+    return ()
+
+
 def _lonlat(option: str, text: str) -> LonLat:
     parts = text.split(",")
     try:
@@ -439,12 +456,16 @@ def _progress(description: str, total: int) -> Iterator[Callable[[], None]]:
         progress.stop()
 
 
-def _print_faults(faults: tuple[Fault, ...], *, as_json: bool) -> None:
+def _print_invalid_input(faults: tuple[Fault, ...], as_json: bool) -> None:
+    heading = f"pondhop: {len(faults)} {'problem' if len(faults) == 1 else 'problems'} in the input"
+    _print_faults(faults, "invalid_input", heading, as_json)
+
+
+def _print_faults(faults: tuple[Fault, ...], status: str, heading: str, as_json: bool) -> None:
     if as_json:
-        message = {"status": "invalid_input", "faults": [asdict(fault) for fault in faults]}
-        typer.echo(json.dumps(message), err=True)
+        typer.echo(json.dumps({"status": status, "faults": [asdict(fault) for fault in faults]}), err=True)
         return
-    typer.echo(f"pondhop: {len(faults)} {'problem' if len(faults) == 1 else 'problems'} in the input", err=True)
+    typer.echo(heading, err=True)
     for number, fault in enumerate(faults, start=1):
         typer.echo(f"{number:3}. {fault.path}: {fault.message}\n     -> {fault.action}", err=True)
 

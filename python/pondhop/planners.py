@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -157,7 +157,8 @@ def plan(
     """
     problem = farm.to_problem(fleet)
     solution = solve(problem, planner=planner, seed=seed, time_limit_s=time_limit_s, threads=threads)
-    return FarmPlan(farm=farm, fleet=fleet, solution=solution)
+    separation = _core.separation(problem, solution.plan.routes)
+    return FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
 
 
 def _faults(effort: Effort) -> list[Fault]:

@@ -13,7 +13,7 @@ from pathlib import Path
 from pondhop import _core
 from pondhop._core import Problem
 from pondhop.errors import Fault, InvalidInput
-from pondhop.planfile import Solution
+from pondhop.planfile import Solution, gap_percent
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Judgement:
         Sizes of the farm and of the plan.
     route_lengths, max_route_length, total_length
         In the units of the farm.
-    lower_bound, gap
-        No plan has a shorter longest route than the bound; the gap is the excess over it as a share of it.
+    lower_bound, gap_percent
+        No plan has a shorter longest route than the bound; the gap is the excess over it, `None` where the bound is 0.
     overlap
         Area shared by the hulls of different routes as a share of the area of the farm's hull.
     num_crossings
@@ -45,7 +45,7 @@ class Judgement:
     max_route_length: float
     total_length: float
     lower_bound: float
-    gap: float
+    gap_percent: float | None
     overlap: float
     num_crossings: int
     is_feasible: bool
@@ -61,8 +61,8 @@ def judge(index: int, problem: Problem, routes: Sequence[Sequence[int]]) -> Judg
         If a route names a pond that does not exist.
     """
     plan = _core.evaluate(problem, routes)
-    lower_bound = _core.lower_bound(problem)
     separation = _core.separation(problem, routes)
+    lower_bound = _core.lower_bound(problem)
     return Judgement(
         index=index,
         num_ponds=problem.num_ponds,
@@ -71,17 +71,12 @@ def judge(index: int, problem: Problem, routes: Sequence[Sequence[int]]) -> Judg
         max_route_length=plan.max_route_length,
         total_length=plan.total_length,
         lower_bound=lower_bound,
-        gap=gap(plan.max_route_length, lower_bound),
+        gap_percent=gap_percent(plan.max_route_length, lower_bound),
         overlap=separation.overlap,
         num_crossings=separation.num_crossings,
         is_feasible=plan.is_feasible,
         violations=plan.violations,
     )
-
-
-def gap(max_route_length: float, lower_bound: float) -> float:
-    """Return the excess of the longest route over the lower bound, as a share of it; 0 where both are 0."""
-    return max_route_length / lower_bound - 1.0 if lower_bound > 0.0 else 0.0
 
 
 def solutions_json(solutions: Sequence[Solution]) -> str:

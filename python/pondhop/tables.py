@@ -8,9 +8,8 @@ from statistics import fmean
 from rich.console import Console
 from rich.table import Table
 
-from pondhop import _core
 from pondhop.planfile import FarmPlan, Solution
-from pondhop.solutionfile import Judgement, gap
+from pondhop.solutionfile import Judgement
 
 MAX_ROWS = 20
 """Of a table with a row a farm; beyond it only the averages are printed."""
@@ -34,15 +33,15 @@ def print_farm_plan(farm_plan: FarmPlan) -> None:
     )
     console.print(table)
 
-    excess = gap(plan.max_route_length, solution.lower_bound)
-    separation = _core.separation(solution.problem, plan.routes)
-    console.print(
-        f"No plan has a longest route below {_km(solution.lower_bound)}: this one is within {excess:.0%} of the best."
-    )
-    console.print(
-        f"Territories of different drones share {separation.overlap:.1%} of the farm; "
-        f"routes cross {separation.num_crossings} times."
-    )
+    bound = f"No plan has a longest route below {_km(solution.lower_bound)}"
+    if solution.gap_percent is not None:
+        bound += f": this one is at most {solution.gap_percent:.0f} % above the best"
+    console.print(f"{bound}.")
+    if solution.separation is not None:
+        overlap, num_crossings = solution.separation.overlap, solution.separation.num_crossings
+        console.print(
+            f"Routes of different drones share {overlap:.1%} of the farm's area and cross {num_crossings} times."
+        )
     console.print(f"Planner {solution.planner}, seed {solution.seed}, {1e3 * solution.elapsed_s:.2f} ms.")
     _print_assumptions(console, farm_plan)
     for violation in plan.violations:
@@ -55,7 +54,7 @@ def print_solutions(solutions: Sequence[Solution]) -> None:
         f"{len(solutions)} farms, planner {solutions[0].planner}",
         [solution.plan.max_route_length for solution in solutions],
         [solution.plan.total_length for solution in solutions],
-        [gap(solution.plan.max_route_length, solution.lower_bound) for solution in solutions],
+        [solution.gap_percent for solution in solutions],
     )
     table.add_row("seconds for all farms", f"{sum(solution.elapsed_s for solution in solutions):.4f}")
     num_infeasible = sum(not solution.plan.is_feasible for solution in solutions)
@@ -72,14 +71,15 @@ def print_judgements(judgements: Sequence[Judgement]) -> None:
             table.add_column(heading, justify="right")
         for farm in judgements:
             lengths = (f"{farm.max_route_length:.4f}", f"{farm.total_length:.4f}")
-            quality = (f"{farm.gap:.1%}", f"{farm.overlap:.1%}", str(farm.num_crossings))
+            gap = "unknown" if farm.gap_percent is None else f"{farm.gap_percent:.1f} %"
+            quality = (gap, f"{farm.overlap:.1%}", str(farm.num_crossings))
             table.add_row(str(farm.index), str(farm.num_ponds), str(farm.num_routes), *lengths, *quality)
         console.print(table)
     averages = _averages_table(
         f"{len(judgements)} farms",
         [farm.max_route_length for farm in judgements],
         [farm.total_length for farm in judgements],
-        [farm.gap for farm in judgements],
+        [farm.gap_percent for farm in judgements],
     )
     averages.add_row("overlap, average", f"{fmean(farm.overlap for farm in judgements):.1%}")
     averages.add_row("crossings, average", f"{fmean(farm.num_crossings for farm in judgements):.1f}")
@@ -89,13 +89,16 @@ def print_judgements(judgements: Sequence[Judgement]) -> None:
             console.print(f"Violation in farm {farm.index}: {violation}", style="bold red")
 
 
-def _averages_table(title: str, longest: Sequence[float], totals: Sequence[float], gaps: Sequence[float]) -> Table:
+def _averages_table(
+    title: str, longest: Sequence[float], totals: Sequence[float], gaps_percent: Sequence[float | None]
+) -> Table:
     table = Table(title=title, show_header=False)
     table.add_column()
     table.add_column(justify="right")
     table.add_row("longest route, average", f"{fmean(longest):.4f}")
     table.add_row("total length, average", f"{fmean(totals):.4f}")
-    table.add_row("gap to the lower bound, average", f"{fmean(gaps):.1%}")
+    known = [gap for gap in gaps_percent if gap is not None]
+    table.add_row("gap to the lower bound, average", f"{fmean(known):.1f} %" if known else "unknown")
     return table
 
 
@@ -108,7 +111,7 @@ def _print_assumptions(console: Console, farm_plan: FarmPlan) -> None:
     if fleet.assumptions:
         names = ", ".join(fleet.assumptions)
         console.print(f"Assumed, not measured: {names}. Say what is true of your drones in a --fleet file.")
-    for note in farm_plan.farm.notes:
+    for note in farm_plan.notes:
         console.print(f"Note: {note}")
 
 
