@@ -20,8 +20,11 @@ MAX_HEIGHT_M = 121.9
 MEASURED_HEIGHT_M = 7.0
 """Transit height at which times on station were measured (simulated ArduCopter 4.7, 3 kg quadcopter)."""
 
+MEASURED_DIP_M = 5.0
+"""How far a drone went down at `MEASURED_HEIGHT_M` to dip its probe."""
+
 HOVER_DIP_S = 9.8
-"""Going down to the water and up again from `MEASURED_HEIGHT_M` with all stops, without the dwell: 14.8 s with 5 s."""
+"""Going down `MEASURED_DIP_M` and up again with all stops, without the dwell: 14.8 s with 5 s."""
 
 SPLASHDOWN_CLIMB_S = 6.7
 """Taking off from the water and climbing to `MEASURED_HEIGHT_M`."""
@@ -38,12 +41,13 @@ _RANGES = {
     "transit_height_m": (1.0, MAX_HEIGHT_M),
     "leg_stop_s": (0.0, 600.0),
     "dwell_s": (0.0, 3_600.0),
+    "dip_height_m": (0.1, MAX_HEIGHT_M),
     "max_route_length_m": (1.0, 1e7),
     "max_route_duration_s": (1.0, 1e6),
 }
 """Smallest and largest sensible value of each number."""
 
-_ASSUMABLE = ("speed_m_s", "transit_height_m", "leg_stop_s", "sampling", "dwell_s")
+_ASSUMABLE = ("speed_m_s", "transit_height_m", "leg_stop_s", "sampling", "dwell_s", "dip_height_m")
 """Settings whose defaults are assumptions."""
 
 
@@ -92,6 +96,9 @@ class Fleet:
 
     def __post_init__(self) -> None:
         faults = _check(_settings(self))
+        if not faults and self.sampling == "hover-dip" and self.dip_height_m >= self.transit_height_m:
+            message = f"{self.dip_height_m:g} m is not below the transit height of {self.transit_height_m:g} m"
+            faults.append(Fault("dip_height_m", message, "dip lower or fly higher"))
         if faults:
             raise InvalidInput(faults)
         defaults = {item.name: item.default for item in fields(self)}
@@ -102,15 +109,16 @@ class Fleet:
     def service_s(self) -> float:
         """Time on station at one pond in seconds, from arriving above it at transit height to leaving from there.
 
-        Measured at 7 m: a hover dip takes 9.8 s and the dwell; a splashdown 16.4 s of landing, the dwell and 6.7 s of
-        climb. Other heights add or save what the autopilot's default vertical speeds make of the difference: 1.5 m/s
-        down and 2.5 m/s up for a hover dip, 0.5 m/s down and 2.5 m/s up for a splashdown.
+        Measured at 7 m: a hover dip takes 9.8 s (down to 2 m) and the dwell; a splashdown 16.4 s of landing, the dwell
+        and 6.7 s of climb. Other heights add or save what the autopilot's default vertical speeds make of the
+        difference: 1.5 m/s down and 2.5 m/s up for a hover dip, 0.5 m/s down and 2.5 m/s up for a splashdown.
         """
-        above_measured_m = self.transit_height_m - MEASURED_HEIGHT_M
         if self.sampling == "splashdown":
+            above_measured_m = self.transit_height_m - MEASURED_HEIGHT_M
             landing_s = self.transit_height_m / LANDING_SPEED_M_S + LANDING_FLARE_S
             return landing_s + self.dwell_s + SPLASHDOWN_CLIMB_S + above_measured_m / CLIMB_SPEED_M_S
-        dip_s = HOVER_DIP_S + above_measured_m * (1.0 / DESCENT_SPEED_M_S + 1.0 / CLIMB_SPEED_M_S)
+        beyond_measured_m = self.transit_height_m - self.dip_height_m - MEASURED_DIP_M
+        dip_s = HOVER_DIP_S + beyond_measured_m * (1.0 / DESCENT_SPEED_M_S + 1.0 / CLIMB_SPEED_M_S)
         return dip_s + self.dwell_s
 
 

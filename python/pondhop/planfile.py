@@ -10,7 +10,7 @@ import json
 import math
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,9 @@ import numpy as np
 from pondhop._core import Plan, Problem, __version__, evaluate
 from pondhop.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm import Farm, LonLat, Pond, Ring
+from pondhop.farm import Farm, Pond
+from pondhop.farm_features import LonLat
+from pondhop.farm_geometry import Ring
 from pondhop.fleet import Fleet
 from pondhop.palette import route_colour
 from pondhop.schemas import read_json
@@ -194,7 +196,7 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
         "schema": SCHEMA,
         "pondhop_version": __version__,
         "farm": _listed(asdict(farm)),
-        "fleet": asdict(farm_plan.fleet) | {"assumptions": _assumptions(farm_plan.fleet)},
+        "fleet": _listed(asdict(farm_plan.fleet)),
         "planner": solution.planner,
         "seed": solution.seed,
         "elapsed_s": solution.elapsed_s,
@@ -248,12 +250,6 @@ def _leg_lengths_m(problem: Problem, route: list[int]) -> list[float]:
     """Lengths of the legs from depot to depot, one more than there are stops."""
     path = np.vstack([problem.depot, problem.ponds[route], problem.depot])
     return [float(length) for length in np.hypot(*np.diff(path, axis=0).T)]
-
-
-def _assumptions(fleet: Fleet) -> list[str]:
-    """Names of the values nobody gave for this drone: those that are pondhop's defaults."""
-    values = ((field.name, field.default, getattr(fleet, field.name)) for field in fields(fleet))
-    return [name for name, default, value in values if default is not None and value == default]
 
 
 def _features(farm_plan: FarmPlan) -> Iterator[dict[str, Any]]:
@@ -311,7 +307,11 @@ def _farm(content: Mapping[str, Any]) -> Farm:
 
 
 def _fleet(content: Mapping[str, Any]) -> Fleet:
-    return Fleet(**{field.name: content[field.name] for field in fields(Fleet)})
+    settings = {field.name: content[field.name] for field in fields(Fleet)}
+    try:
+        return Fleet(**settings | {"assumptions": tuple(content["assumptions"])})
+    except InvalidInput as error:
+        raise InvalidInput(replace(fault, path=f"fleet.{fault.path}") for fault in error.faults) from error
 
 
 def _lon_lat(position: list[float]) -> LonLat:

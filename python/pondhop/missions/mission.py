@@ -12,11 +12,10 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from pondhop.errors import Fault
-from pondhop.farm import Farm, LonLat, Pond, Ring
-from pondhop.fleet import Fleet
-
-MAX_HEIGHT_M = 121.9
-"""400 ft above ground, where small drones must stay below in the USA (14 CFR 107.51)."""
+from pondhop.farm import Farm, Pond
+from pondhop.farm_features import LonLat
+from pondhop.farm_geometry import Ring
+from pondhop.fleet import MAX_HEIGHT_M, Fleet
 
 MAX_HOLD_S = 65_535
 """ArduPilot keeps the hold of a waypoint as whole seconds in 16 bits."""

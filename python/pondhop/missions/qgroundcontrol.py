@@ -9,7 +9,7 @@ import json
 from typing import Any
 
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm import Ring
+from pondhop.farm_geometry import Ring
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Mission, MissionItem
 from pondhop.schemas import parse_json

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm import LonLat
+from pondhop.farm_features import LonLat
 from pondhop.missions.mavlink import (
     FRAME_GLOBAL,
     NAV_WAYPOINT,
