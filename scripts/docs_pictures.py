@@ -10,5 +10,4 @@ IMAGES = ROOT / "docs" / "images"
 
 farm = pondhop.read_farm(ROOT / "examples" / "delta_farm.geojson")
 farm_plan = pondhop.plan(farm, pondhop.Fleet(num_drones=5))
-IMAGES.mkdir(parents=True, exist_ok=True)
-plot.save_figure(plot.plot_plan(farm_plan), IMAGES / "delta_farm")
+plot.save_figure(plot.plot_plan(farm_plan), IMAGES / "delta_farm.png")

@@ -154,17 +154,18 @@ def test_plan_as_json_is_the_plan_file(run: Run, tmp_path: Path) -> None:
 def test_a_written_plan_can_be_judged_and_drawn(run: Run, tmp_path: Path) -> None:
     assert run("plan", FARM, "--drones", 3, "--no-figure", "-o", tmp_path).code == 0
     assert run("evaluate", tmp_path / "plan.json", "--require-feasible").code == 0
-    drawn = run("plot", tmp_path / "plan.json", "-o", tmp_path / "figure", "--json")
+    drawn = run("plot", tmp_path / "plan.json", "-o", tmp_path / "figure.svg", "--json")
     assert drawn.code == 0
-    assert all(Path(path).stat().st_size > 1000 for path in json.loads(drawn.out)["figures"])
+    assert Path(json.loads(drawn.out)["figure"]).stat().st_size > 1000
 
 
 def test_research_plans_can_be_drawn(run: Run, farms: Path, tmp_path: Path) -> None:
     plans = tmp_path / "plans.json"
     assert run("solve", farms, "--routes", 3, "-o", plans).code == 0
-    assert run("plot", plans, "--farms", farms, "--index", 2, "-o", tmp_path / "figure").code == 0
+    assert run("plot", plans, "--farms", farms, "--index", 2, "-o", tmp_path / "figure.png").code == 0
     assert (tmp_path / "figure.png").exists()
-    assert faults(run("plot", plans, "--farms", farms, "--index", 3, "-o", tmp_path / "figure", "--json"))
+    assert faults(run("plot", plans, "--farms", farms, "--index", 3, "-o", tmp_path / "figure.png", "--json"))
+    assert faults(run("plot", plans, "--farms", farms, "-o", tmp_path / "figure.bmp", "--json"))
 
 
 def test_an_infeasible_plan_is_a_result(run: Run, tmp_path: Path) -> None:

@@ -14,9 +14,10 @@ from hypothesis import strategies as st
 
 from hand_made import make_farm, make_plan, square, two_drones
 from pondhop import InvalidInput
+from pondhop._core import separation
 from pondhop.farm import Farm, Pond
 from pondhop.fleet import Fleet
-from pondhop.planfile import FarmPlan, Separation, read_plan_json, write_plan_geojson, write_plan_json
+from pondhop.planfile import FarmPlan, read_plan_json, write_plan_geojson, write_plan_json
 from pondhop.schemas import load_schema
 
 
@@ -93,13 +94,14 @@ def test_a_plan_with_everything_survives_the_round_trip(tmp_path: Path) -> None:
     )
     fleet = Fleet(num_drones=1, sampling="splashdown", max_route_length_m=500, max_route_duration_s=1e5)
     farm_plan = make_plan(farm, fleet, [[0], [1]])
-    solution = replace(farm_plan.solution, separation=Separation(0.0125, 2))
+    measured = separation(farm_plan.solution.problem, farm_plan.solution.plan.routes)
+    solution = replace(farm_plan.solution, separation=measured)
     farm_plan = replace(farm_plan, solution=solution)
     content = written(tmp_path, farm_plan)
     jsonschema.validate(content, strict_schema())
     assert content["unserved"] == [{"pond": 2, "id": "3"}]
     assert content["violations"] == ["pond 2 is not visited", "2 routes for 1 drones"]
-    assert content["separation"] == {"overlap": 0.0125, "num_crossings": 2}
+    assert content["separation"] == {"overlap": 0.0, "num_crossings": 0}
     assert [note[:10] for note in content["notes"]] == ["A note.", "Splashdown"]
     assert_equal(read_plan_json(tmp_path / "plan.json"), farm_plan)
 

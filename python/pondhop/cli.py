@@ -35,6 +35,7 @@ EXIT_BUG = 1
 EXIT_INVALID_INPUT = 2
 EXIT_INFEASIBLE = 3
 SECONDS_BEFORE_PROGRESS = 2.0
+FIGURE_NAMES = ("plan.png", "plan.svg")
 
 app = typer.Typer(
     name="pondhop",
@@ -149,10 +150,12 @@ def plan(
         if figure:
             from pondhop import plot as figures
 
-            figures.save_figure(figures.plot_plan(farm_plan), output / "plan")
+            axes = figures.plot_plan(farm_plan)
+            for name in FIGURE_NAMES:
+                figures.save_figure(axes, output / name)
             advance()
         else:
-            for name in ("plan.png", "plan.svg"):
+            for name in FIGURE_NAMES:
                 (output / name).unlink(missing_ok=True)
     if as_json:
         typer.echo((output / "plan.json").read_text(encoding="utf-8"), nl=False)
@@ -161,7 +164,7 @@ def plan(
 
         tables.print_farm_plan(farm_plan)
         written = ["plan.json", "plan.geojson", *(() if faults else ["missions/"])]
-        written += ["plan.png", "plan.svg"] if figure else []
+        written += FIGURE_NAMES if figure else ()
         typer.echo(f"Written to {output}: {', '.join(written)}")
     if faults:
         _print_faults(faults, "no_missions", "No mission was written, because this plan cannot be flown", as_json)
@@ -263,17 +266,19 @@ def evaluate(
 @app.command(no_args_is_help=True)
 def plot(
     plans: Annotated[Path, typer.Argument(exists=True, help="plan.json of a farm, or the plans of 'pondhop solve'.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="The picture; .png and .svg are both written.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="The picture, .png or .svg.")],
     farms: FarmsOption = None,
     index: Annotated[int, typer.Option(min=0, help="Which of the research farms, from 0.")] = 0,
     as_json: Json = False,
 ) -> None:
     """Draw a plan: outline, ponds, depot and routes, with their lengths in the legend.
 
-    - `pondhop plot tonight/plan.json -o tonight/plan`
-    - `pondhop plot plans.json --farms farms.json --index 3 -o farm3`
+    - `pondhop plot tonight/plan.json -o tonight/plan.svg`
+    - `pondhop plot plans.json --farms farms.json --index 3 -o farm3.png`
     """
     _require_matplotlib()
+    if output.suffix.lower() not in (".png", ".svg"):
+        raise InvalidInput([Fault("--output", f"{output} is neither .png nor .svg", "let the name end in one of them")])
     from pondhop import plot as figures
 
     with _progress("Drawing", total=1) as advance:
@@ -284,10 +289,9 @@ def plot(
         else:
             farm, routes = _farm_and_routes(plans, farms, index)
             axes = figures.plot_solution(farm.to_problem(max(1, len(routes))), routes, boundary=farm.boundary)
-        written = figures.save_figure(axes, output)
+        figures.save_figure(axes, output)
         advance()
-    names = [str(path) for path in written]
-    typer.echo(json.dumps({"figures": names}) if as_json else f"Written: {', '.join(names)}")
+    typer.echo(json.dumps({"figure": str(output)}) if as_json else f"Written: {output}")
 
 
 @app.command(no_args_is_help=True)

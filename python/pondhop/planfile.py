@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from pondhop._core import Plan, Problem, __version__, evaluate
+from pondhop._core import Plan, Problem, Separation, __version__, evaluate, separation
 from pondhop.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import Farm, Pond
@@ -33,22 +33,6 @@ _ABSOLUTE_TOLERANCE = 1e-3
 """How far the numbers of a file may be from what the evaluator finds: a millimetre, a millisecond, or rounding."""
 
 _REMEDY = "change the routes only by planning again: all numbers of a plan follow from them"
-
-
-@dataclass(frozen=True)
-class Separation:
-    """How well the routes of different drones keep apart.
-
-    Attributes
-    ----------
-    overlap
-        Area that the convex hulls of different routes share, as a share of the area of the farm's hull.
-    num_crossings
-        How often legs of different routes cross.
-    """
-
-    overlap: float
-    num_crossings: int
 
 
 @dataclass(frozen=True)
@@ -80,9 +64,12 @@ class Solution:
     @property
     def gap_percent(self) -> float | None:
         """How far the longest route is above the lower bound; `None` if the bound is 0."""
-        if self.lower_bound <= 0:
-            return None
-        return 100 * (self.plan.max_route_length - self.lower_bound) / self.lower_bound
+        return gap_percent(self.plan.max_route_length, self.lower_bound)
+
+
+def gap_percent(max_route_length: float, lower_bound: float) -> float | None:
+    """Return how far a longest route is above the lower bound; `None` if the bound is 0."""
+    return 100 * (max_route_length - lower_bound) / lower_bound if lower_bound > 0 else None
 
 
 @dataclass(frozen=True)
@@ -171,7 +158,6 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
     if unknown:
         raise InvalidInput(unknown)
     problem = farm.to_problem(fleet)
-    separation = content["separation"]
     solution = Solution(
         problem=problem,
         plan=evaluate(problem, routes),
@@ -179,7 +165,7 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
         seed=content["seed"],
         elapsed_s=content["elapsed_s"],
         lower_bound=content["lower_bound_m"],
-        separation=separation and Separation(separation["overlap"], separation["num_crossings"]),
+        separation=separation(problem, routes) if content["separation"] else None,
     )
     farm_plan = FarmPlan(farm, fleet, solution)
     # All numbers of a plan follow from its routes, so what the file should hold is what we would write.
@@ -202,7 +188,7 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
         "elapsed_s": solution.elapsed_s,
         "lower_bound_m": solution.lower_bound,
         "gap_percent": solution.gap_percent,
-        "separation": solution.separation and asdict(solution.separation),
+        "separation": solution.separation and _separation_object(solution.separation),
         "summary": {
             "num_ponds": len(farm.ponds),
             "num_routes": len(plan.routes),
@@ -217,6 +203,10 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
         "unserved": [{"pond": pond, "id": farm.ponds[pond].id} for pond in plan.unserved],
         "notes": list(farm_plan.notes),
     }
+
+
+def _separation_object(measured: Separation) -> dict[str, Any]:
+    return {"overlap": measured.overlap, "num_crossings": measured.num_crossings}
 
 
 def _route_object(farm_plan: FarmPlan, index: int) -> dict[str, Any]:

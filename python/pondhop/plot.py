@@ -139,7 +139,9 @@ def plot_solution(
     outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
     ax = _prepared(ax, np.vstack([problem.depot[None], problem.ponds, *outline]), look)
     _draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
-    labels = [f"{length:.3f}, {len(route)} ponds" for route, length in zip(plan.routes, plan.route_lengths, strict=True)]
+    labels = [
+        f"{length:.3f}, {len(route)} ponds" for route, length in zip(plan.routes, plan.route_lengths, strict=True)
+    ]
     _draw_routes(ax, problem, plan, labels, look)
     parts = [f"longest route {plan.max_route_length:.3f}", f"total {plan.total_length:.3f}"]
     _write_title(ax, f"{problem.num_ponds} ponds, {len(plan.routes)} routes", parts, look)

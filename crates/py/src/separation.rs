@@ -5,7 +5,8 @@ use crate::problem::Problem;
 use pyo3::prelude::*;
 
 /// How well a plan keeps the drones apart: immutable.
-#[pyclass(frozen, module = "pondhop")]
+#[pyclass(frozen, eq, module = "pondhop")]
+#[derive(PartialEq)]
 pub struct Separation {
     inner: pondhop_core::separation::Separation,
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from pathlib import Path
 
 from pondhop.atomic import write_all
@@ -27,7 +27,8 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     """Write one ``drone-N.plan`` and one ``drone-N.waypoints`` per route, and a ``README.txt`` for the flight crew.
 
     Every mission is checked first (see `pondhop.missions.mission.check_mission`), and every text is read back and must
-    give the same mission. Missions of an earlier plan in the folder are removed, so that no drone flies one of them.
+    give the same mission. Missions of an earlier plan in the folder are removed, also where the new ones are refused, so
+    that no drone flies one of them.
 
     Parameters
     ----------
@@ -57,6 +58,7 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     for mission in missions:
         faults.extend(check_mission(mission, max_num_items=MAX_NUM_ITEMS))
     if faults:
+        _remove_missions(folder, keep=())
         raise InvalidInput(faults)
     texts = {}
     for mission in missions:
@@ -64,10 +66,14 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
         texts[folder / f"{mission.name}.waypoints"] = _waypoints_text(mission)
     texts[folder / "README.txt"] = _readme(farm_plan)
     write_all(texts)
-    for path in folder.iterdir():
-        if _MISSION_FILE.fullmatch(path.name) and path not in texts:
-            path.unlink()
+    _remove_missions(folder, keep=texts)
     return list(texts)
+
+
+def _remove_missions(folder: Path, keep: Container[Path]) -> None:
+    for path in folder.iterdir() if folder.is_dir() else ():
+        if _MISSION_FILE.fullmatch(path.name) and path not in keep:
+            path.unlink()
 
 
 def _limit_faults(farm_plan: FarmPlan) -> Iterator[Fault]:
