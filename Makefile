@@ -47,7 +47,7 @@ pins: ## Take the newest dependencies and pin them in Cargo.pins and constraints
 	rm -rf $(VENV)
 	: > constraints.txt
 	$(MAKE) build
-	$(BIN)/pip freeze --all --exclude-editable --exclude pip --exclude setuptools --exclude pondhop > constraints.txt
+	$(BIN)/pip freeze --exclude pip --exclude setuptools --exclude pondhop > constraints.txt
 
 clean: ## Remove everything that make has made
 	rm -rf $(VENV) target out Cargo.lock python/pondhop/_core*.so .mypy_cache .ruff_cache .pytest_cache .import_linter_cache

@@ -48,8 +48,8 @@ def test_the_parser_sees_blocks_and_markers() -> None:
     )
     assert blocks_of(text) == [
         Block(2, "bash", "true\n", None),
-        Block(9, "toml", "x = 1\n", "a.toml"),
-        Block(15, "python", 'print("x")\n', None),
+        Block(10, "toml", "x = 1\n", "a.toml"),
+        Block(16, "python", 'print("x")\n', None),
     ]
 
 

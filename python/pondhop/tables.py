@@ -20,7 +20,8 @@ def print_farm_plan(farm_plan: FarmPlan) -> None:
     console = Console(highlight=False)
     solution, farm = farm_plan.solution, farm_plan.farm
     plan = solution.plan
-    table = Table(title=f"{farm.name}: {len(farm.ponds)} ponds, {len(plan.routes)} routes")
+    console.print(f"{farm.name}: {len(farm.ponds)} ponds, {len(plan.routes)} routes", style="bold")
+    table = Table()
     for heading in ("Drone", "Ponds", "Length", "Duration"):
         table.add_column(heading, justify="right")
     for number, route in enumerate(plan.routes):

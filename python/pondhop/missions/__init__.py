@@ -27,8 +27,8 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     """Write one ``drone-N.plan`` and one ``drone-N.waypoints`` per route, and a ``README.txt`` for the flight crew.
 
     Every mission is checked first (see `pondhop.missions.mission.check_mission`), and every text is read back and must
-    give the same mission. Missions of an earlier plan in the folder are removed, also where the new ones are refused, so
-    that no drone flies one of them.
+    give the same mission. Missions of an earlier plan in the folder are removed, also where the new ones are refused:
+    no drone is to fly one of them.
 
     Parameters
     ----------
