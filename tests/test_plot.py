@@ -61,7 +61,7 @@ def test_the_scale_bar_is_as_long_as_it_says() -> None:
     ax = plot_plan(two_drones())
     (text,) = [text for text in ax.texts if text.get_text().endswith((" m", " km"))]
     assert text.get_text() == "200 m"
-    (bar,) = [np.asarray(line.get_xydata()) for line in ax.lines if len(np.asarray(line.get_xydata())) == 2]
+    (bar,) = [np.asarray(line.get_xydata()) for line in ax.lines if line.get_linewidth() == 2]
     assert bar[1] - bar[0] == pytest.approx([200, 0])
 
 
