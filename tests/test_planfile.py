@@ -61,6 +61,19 @@ def test_the_shipped_schemas_are_schemas() -> None:
         jsonschema.Draft202012Validator.check_schema(load_schema(name))
 
 
+def property_names(schema: Any) -> Iterator[str]:
+    if isinstance(schema, dict):
+        yield from schema.get("properties", {})
+        for value in schema.values():
+            yield from property_names(value)
+
+
+def test_the_reference_names_every_property_of_the_schema() -> None:
+    text = (Path(__file__).parents[1] / "docs" / "reference" / "json.md").read_text(encoding="utf-8")
+    missing = [name for name in property_names(load_schema("plan-1")) if name not in text]
+    assert missing == []
+
+
 def test_a_written_plan_fits_the_schema_and_says_what_was_planned(tmp_path: Path) -> None:
     farm_plan = two_drones()
     content = written(tmp_path, farm_plan)

@@ -36,6 +36,10 @@ _ARROW_EVERY = 0.09
 """Flown length between direction arrows, as a share of the diagonal of the picture."""
 
 
+_MAP_SIZE_IN, _MAX_SIDE_IN = 6.5, 10.0
+"""Side of a square map, and the longest side of any, in inches."""
+
+
 @dataclass(frozen=True)
 class _Look:
     """Colours of everything but the routes."""
@@ -161,7 +165,7 @@ def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
     Raises
     ------
     ValueError
-        If matplotlib knows no such format.
+        If matplotlib knows no such format, or the axes belong to no figure.
     OSError
         If the file cannot be written.
     """
@@ -170,8 +174,11 @@ def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     metadata = {"Date": None} if path.suffix.lower() == ".svg" else None
+    figure = ax.get_figure(root=True)
+    if figure is None:
+        raise ValueError("the axes belong to no figure")
     with mpl.rc_context({"svg.hashsalt": "pondhop"}):
-        ax.figure.savefig(path, dpi=160, metadata=metadata)
+        figure.savefig(path, dpi=160, metadata=metadata, bbox_inches="tight", pad_inches=0.2)
 
 
 def _prepared(ax: Axes | None, extent: Points, look: _Look) -> Axes:
@@ -183,7 +190,7 @@ def _prepared(ax: Axes | None, extent: Points, look: _Look) -> Axes:
         ax = _figure_axes(width / height)
     ax.figure.set_facecolor(look.background)
     ax.set_facecolor(look.background)
-    ax.set_aspect("equal")
+    ax.set_aspect("equal", anchor="NW")
     ax.set_xlim(west - margin, east + margin)
     ax.set_ylim(south - margin, north + margin)
     ax.set_xticks([])
@@ -195,11 +202,10 @@ def _prepared(ax: Axes | None, extent: Points, look: _Look) -> Axes:
 def _figure_axes(aspect: float) -> Axes:
     from matplotlib.figure import Figure
 
-    # Beside the map there is room for the legend, above it for the title.
-    map_width = float(np.clip(6.5 * np.sqrt(aspect), 4.5, 10.0))
-    map_height = float(np.clip(map_width / aspect, 3.0, 9.0))
-    figure = Figure(figsize=(map_width + 2.6, map_height + 0.8), layout="constrained")
-    return figure.add_subplot()
+    # Legend and title stand outside; `save_figure` makes room for them.
+    width, height = _MAP_SIZE_IN * np.sqrt(aspect), _MAP_SIZE_IN / np.sqrt(aspect)
+    scale = min(1.0, _MAX_SIDE_IN / max(width, height))
+    return Figure(figsize=(scale * width, scale * height)).add_axes((0, 0, 1, 1))
 
 
 def _local(frame: LocalFrame, ring: Ring) -> Points:
@@ -239,10 +245,19 @@ def _draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], 
     unserved = problem.ponds[plan.unserved]
     if len(unserved):
         ax.plot(*unserved.T, "x", color=look.no_fly, markersize=6, markeredgewidth=1.6, zorder=5, label="not visited")
-    depot_style = {"marker": "s", "color": look.ink, "markeredgecolor": look.background, "linestyle": ""}
-    ax.plot(*problem.depot, markersize=9, zorder=7, label="depot", **depot_style)
-    legend = ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, labelcolor=look.ink, fontsize=9)
-    legend.set_zorder(8)
+    ax.plot(
+        *problem.depot,
+        color=look.ink,
+        linestyle="",
+        marker="s",
+        markeredgecolor=look.background,
+        markersize=9,
+        zorder=7,
+        label="depot",
+    )
+    ax.legend(
+        loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0, frameon=False, labelcolor=look.ink, fontsize=9
+    )
 
 
 def _draw_hull(ax: Axes, ponds: Points, colour: str) -> None:
