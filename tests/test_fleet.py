@@ -32,7 +32,7 @@ def test_a_metre_of_height_costs_descent_and_climb() -> None:
     assert replace(splashdown, transit_height_m=8.0).service_s - splashdown.service_s == pytest.approx(2.4)
 
 
-@given(st.floats(1.0, 121.9), st.floats(0.0, 600.0), st.sampled_from(["hover-dip", "splashdown"]))
+@given(st.floats(2.1, 121.9), st.floats(0.0, 600.0), st.sampled_from(["hover-dip", "splashdown"]))
 def test_time_on_station_exceeds_the_dwell(height_m: float, dwell_s: float, sampling: str) -> None:
     fleet = Fleet(1, transit_height_m=height_m, dwell_s=dwell_s, sampling=sampling)  # type: ignore[arg-type]
     assert fleet.service_s > dwell_s
@@ -48,7 +48,13 @@ def test_what_the_file_leaves_out_is_an_assumption(tmp_path: Path) -> None:
 
 
 def test_a_fleet_made_directly_assumes_its_defaults() -> None:
-    assert Fleet(3, leg_stop_s=4.0).assumptions == ("speed_m_s", "transit_height_m", "sampling", "dwell_s")
+    assert Fleet(3, leg_stop_s=4.0).assumptions == (
+        "speed_m_s",
+        "transit_height_m",
+        "sampling",
+        "dwell_s",
+        "dip_height_m",
+    )
 
 
 def test_every_fault_is_named_at_once(tmp_path: Path) -> None:
