@@ -15,10 +15,8 @@ from pondhop._core import LocalFrame, Problem
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm_features import Feature, Geometry, LonLat, Source, normal_name, number_of, text_of
 from pondhop.farm_formats import read_source
-from pondhop.farm_geometry import Ring
+from pondhop.farm_geometry import Area
 from pondhop.fleet import Fleet
-
-Area = tuple[Ring, ...]
 
 ROLES = ("pond", "depot", "station", "no_fly", "fence")
 """What a feature can be, in the property ``role``; the first is the default."""

@@ -186,6 +186,9 @@ def _positions(place: str, value: Any, depth: int, faults: list[Fault]) -> Any:
             action = "give a list of positions [longitude, latitude]"
             faults.append(Fault(place, f"{_shown(value)} is no list of positions", action))
             return None
+        # Places are worked out only where something is wrong: large files hold millions of positions.
+        if depth == 1 and all(map(_is_position, value)):
+            return [(float(position[0]), float(position[1])) for position in value]
         parts = [_positions(f"{place}[{index}]", part, depth - 1, faults) for index, part in enumerate(value)]
         return None if any(part is None for part in parts) else parts
     if not isinstance(value, list) or len(value) < 2:
@@ -198,6 +201,17 @@ def _positions(place: str, value: Any, depth: int, faults: list[Fault]) -> Any:
             action = f"write the {name} as a number in degrees"
             faults.append(Fault(f"{place}[{index}]", f"{_shown(value[index])} is no number", action))
     return None if None in numbers else (numbers[0], numbers[1])
+
+
+def _is_position(value: object) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) >= 2
+        and isinstance(value[0], float)
+        and isinstance(value[1], float)
+        and math.isfinite(value[0])
+        and math.isfinite(value[1])
+    )
 
 
 def _json_name(value: object) -> str:

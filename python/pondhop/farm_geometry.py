@@ -8,6 +8,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +17,11 @@ from pondhop._core import LocalFrame
 from pondhop.errors import Fault
 from pondhop.farm_features import Feature, LonLat, Positions
 
+if TYPE_CHECKING:
+    import shapely
+
 Ring = tuple[LonLat, ...]
+Area = tuple[Ring, ...]
 
 MAX_LATITUDE_DEG = 75.0
 """No pond is farmed nearer to a pole; a latitude beyond it is a longitude."""
@@ -91,7 +97,15 @@ def close_ring(positions: Positions) -> Ring:
     return ring if len(ring) > 1 and ring[0] == ring[-1] else (*ring, *ring[:1])
 
 
-def check_polygon(place: str, rings: Sequence[Ring]) -> list[Fault]:
+@lru_cache(maxsize=8)
+def _polygon(rings: Area) -> shapely.Polygon:
+    """The polygon as shapely has it; remembered, because each one is asked several questions in a row."""
+    import shapely
+
+    return shapely.polygons(np.array(rings[0]), holes=[np.array(ring) for ring in rings[1:]] or None)
+
+
+def check_polygon(place: str, rings: Area) -> list[Fault]:
     """Faults of a polygon that bounds no area or crosses itself, with the position of the crossing."""
     import shapely
 
@@ -99,15 +113,13 @@ def check_polygon(place: str, rings: Sequence[Ring]) -> list[Fault]:
         if len(set(ring)) < 3:
             message = f"the outline has {len(set(ring))} different corners"
             return [Fault(place, message, "give a pond at least three corners, or make it a Point")]
-    # The hull, because the two halves of an outline that crosses itself may cancel out.
-    hull_m2 = (
-        shapely.LineString(rings[0]).convex_hull.area * METRES_PER_DEGREE**2 * math.cos(math.radians(rings[0][0][1]))
-    )
-    if hull_m2 < MIN_AREA_M2:
-        return [Fault(place, "the outline encloses no area", "draw around the water, or make the pond a Point")]
-    polygon = shapely.Polygon(rings[0], rings[1:])
-    if polygon.is_valid:
+    polygon = _polygon(rings)
+    square_degree_m2 = METRES_PER_DEGREE**2 * math.cos(math.radians(rings[0][0][1]))
+    if polygon.is_valid and polygon.area * square_degree_m2 >= MIN_AREA_M2:
         return []
+    # The hull, because the two halves of an outline that crosses itself may cancel out.
+    if shapely.LineString(rings[0]).convex_hull.area * square_degree_m2 < MIN_AREA_M2:
+        return [Fault(place, "the outline encloses no area", "draw around the water, or make the pond a Point")]
     reason, _, where = shapely.is_valid_reason(polygon).rstrip("]").partition("[")
     longitude, _, latitude = where.partition(" ")
     spot = f" at {float(longitude):.6f}, {float(latitude):.6f}" if latitude else ""
@@ -116,14 +128,14 @@ def check_polygon(place: str, rings: Sequence[Ring]) -> list[Fault]:
     return [Fault(place, f"{meaning}{spot}", action)]
 
 
-def point_inside(rings: Sequence[Ring]) -> LonLat:
+def point_inside(rings: Area) -> LonLat:
     """A place well inside a valid polygon: its centroid, or where that is outside the pole of inaccessibility.
 
     The pole is the centre of the largest circle inside, with longitudes shortened as on the ground.
     """
     import shapely
 
-    polygon = shapely.Polygon(rings[0], rings[1:])
+    polygon = _polygon(rings)
     centroid = polygon.centroid
     if polygon.contains(centroid):
         return (centroid.x, centroid.y)
@@ -134,34 +146,35 @@ def point_inside(rings: Sequence[Ring]) -> LonLat:
     return (centre[0] / shrink, centre[1])
 
 
-def area_deg2(rings: Sequence[Ring]) -> float:
+def area_deg2(rings: Area) -> float:
     """Area of a polygon in square degrees, to tell the largest of several in one place."""
-    import shapely
-
-    return float(shapely.Polygon(rings[0], rings[1:]).area)
+    return float(_polygon(rings).area)
 
 
-def extent_m(rings: Sequence[Ring]) -> float:
+def extent_m(rings: Area) -> float:
     """Diagonal in metres of the box around a polygon."""
     lons, lats = zip(*rings[0], strict=True)
     return distance_m((min(lons), min(lats)), (max(lons), max(lats)))
 
 
-def distance_to_outline_m(point: LonLat, rings: Sequence[Ring]) -> float:
+def distance_to_outline_m(point: LonLat, rings: Area) -> float:
     """How far a place lies outside a polygon in metres; 0 inside."""
     import shapely
 
     shrink = math.cos(math.radians(point[1]))
-    polygon = shapely.transform(shapely.Polygon(rings[0], rings[1:]), lambda lonlat: lonlat * [shrink, 1.0])
+    polygon = shapely.transform(_polygon(rings), lambda lonlat: lonlat * [shrink, 1.0])
     return float(polygon.distance(shapely.Point(point[0] * shrink, point[1]))) * METRES_PER_DEGREE
 
 
-def ponds_within_ponds(points: Sequence[LonLat], outlines: Sequence[tuple[Ring, ...]]) -> list[tuple[int, int]]:
+def ponds_within_ponds(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tuple[int, int]]:
     """Pairs (i, j): the sampling point of pond i lies in pond j. Ponds given as points have an empty outline."""
     import shapely
 
     has_outline = [index for index, rings in enumerate(outlines) if rings]
-    tree = shapely.STRtree([shapely.Polygon(outlines[i][0], outlines[i][1:]) for i in has_outline])
+    outer_rings = [outlines[index][0] for index in has_outline]
+    corners = np.array([position for ring in outer_rings for position in ring])
+    ring_of_corner = np.repeat(np.arange(len(outer_rings)), [len(ring) for ring in outer_rings])
+    tree = shapely.STRtree(shapely.polygons(shapely.linearrings(corners, indices=ring_of_corner)))
     inside, container = tree.query(shapely.points(np.array(points)), predicate="within")
     pairs = ((int(i), has_outline[int(j)]) for i, j in zip(inside, container, strict=True))
     return sorted((i, j) for i, j in pairs if i != j)
