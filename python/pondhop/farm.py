@@ -210,6 +210,7 @@ class _FarmReader:
     ponds: list[Pond] = field(default_factory=list)
     pond_features: list[Feature] = field(default_factory=list)
     depot: LonLat | None = None
+    has_depot_feature: bool = False
     stations: list[LonLat] = field(default_factory=list)
     no_fly: list[Area] = field(default_factory=list)
     fences: list[Area] = field(default_factory=list)
@@ -232,6 +233,7 @@ class _FarmReader:
         first_depot: Feature | None = None
         for feature in features:
             role = self._role(feature)
+            self.has_depot_feature |= role == "depot"
             if role is None or all_misplaced or feature.place in misplaced_places:
                 continue
             if role == "pond":
@@ -285,6 +287,10 @@ class _FarmReader:
             areas = self._areas(feature, "a pond")
             if areas:
                 outline = max(areas, key=farm_geometry.area_deg2) if len(areas) > 1 else areas[0]
+                extent_m = farm_geometry.extent_m(outline)
+                if extent_m > farm_geometry.MAX_GAP_M:
+                    message = f"the pond is {extent_m / 1000:.0f} km across"
+                    self.faults.append(Fault(feature.place, message, "look for a mistyped corner"))
             if len(areas) > 1:
                 self.source.notes.append(f"{feature.place}: the pond has {len(areas)} parts; the largest is sampled.")
         elif len(geometry.points) == 1:
@@ -436,19 +442,21 @@ class _FarmReader:
         user, who thereby says which farm is meant, they are left out with a note; else they are faults.
         """
         points = [pond.sampling_point for pond in self.ponds]
-        if not points:
-            return
-        groups = farm_geometry.neighbourhoods(points)
-        main = self._group_at_depot(groups) if self.depot is not None else groups[0]
+        groups = farm_geometry.neighbourhoods(points if self.depot is None else [*points, self.depot])
+        main = groups[0] if groups else []
+        if self.depot is not None:
+            main = next(group for group in groups if len(points) in group)
         others = [group for group in groups if group is not main]
-        if self.depot is None and not is_depot_given:
-            places = "; ".join(self._described(group) for group in groups if len(group) > 1 or group is main)
-            action = f"pass --depot LON,LAT: {places}"
+        main = [index for index in main if index < len(points)]
+        if not is_depot_given and not self.has_depot_feature and self.source.features:
+            told = [self._described(group) for group in (main, *others) if len(group) > 1 or group == main != []]
+            action = f"pass --depot LON,LAT{': ' if told else ''}{'; '.join(told)}"
             self.faults.append(Fault("file", "there is no depot, where drones start and end", action))
-        if main is None:
-            self._report_far_depot(groups)
+        if not main:
+            if points:
+                self._report_far_depot(others)
             return
-        centre = self.depot or farm_geometry.middle([points[index] for index in main or ()])
+        centre = self.depot or farm_geometry.middle([points[index] for index in main])
         left_out: set[int] = set()
         for group in others:
             if len(group) > 1 and is_depot_given:
@@ -462,16 +470,10 @@ class _FarmReader:
                 self._report_far_ponds(group, centre)
         self.ponds = [pond for index, pond in enumerate(self.ponds) if index not in left_out]
 
-    def _group_at_depot(self, groups: Sequence[list[int]]) -> list[int] | None:
-        """The group of ponds that the depot belongs to, if it lies near one."""
-        points = [pond.sampling_point for pond in self.ponds]
-        with_depot = farm_geometry.neighbourhoods([*points, self.depot or points[0]])
-        joined = next(set(group) for group in with_depot if len(points) in group)
-        return next((group for group in groups if joined.issuperset(group)), None)
-
     def _described(self, group: Sequence[int]) -> str:
         lon, lat = farm_geometry.middle([self.ponds[index].sampling_point for index in group])
-        return f"{len(group)} ponds lie around {lon:.6f},{lat:.6f}"
+        ponds = "1 pond lies" if len(group) == 1 else f"{len(group)} ponds lie"
+        return f"{ponds} around {lon:.6f},{lat:.6f}"
 
     def _report_far_depot(self, groups: Sequence[list[int]]) -> None:
         depot = self.depot or (0.0, 0.0)

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 
 from pondhop.errors import Fault
 
@@ -64,14 +65,17 @@ class Feature:
     own_id: str | None = None
     layer: str | None = None
 
+    @cached_property
+    def _keys(self) -> dict[str, str]:
+        return {normal_name(key): key for key in self.properties}
+
     def find(self, *names: str) -> tuple[str, object] | None:
         """The first property that is there under one of the names, as the file spells it, and its value.
 
         Spelling is forgiving: ``Pond ID`` is ``pond_id``. Blank values count as absent.
         """
-        by_name = {normal_name(key): key for key in self.properties}
         for name in names:
-            key = by_name.get(normal_name(name))
+            key = self._keys.get(normal_name(name))
             if key is not None and not is_blank(self.properties[key]):
                 return key, self.properties[key]
         return None
@@ -99,6 +103,7 @@ class Source:
     notes: list[str] = field(default_factory=list)
 
 
+@lru_cache(maxsize=4096)
 def normal_name(name: str) -> str:
     """A property name without case, blanks and punctuation."""
     return re.sub(r"[\W_]+", "", name).lower()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -46,14 +47,22 @@ def read_source(path: Path) -> Source:
         elif path.is_file() and path.stat().st_size == 0:
             source.faults.append(Fault(str(path), "the file is empty", "export the farm again"))
         elif suffix in {".geojson", ".json"}:
-            _read_geojson(_decode(path.read_bytes(), source), source)
+            _read_text(path, _read_geojson, source)
         elif suffix in {".csv", ".tsv", ".txt"}:
-            read_table(_decode(path.read_bytes(), source), source)
+            _read_text(path, read_table, source)
         else:
             _read_gis(path, source)
     except OSError as error:
         source.faults.append(Fault(str(path), f"cannot be read: {error.strerror}", "check the file's permissions"))
     return source
+
+
+def _read_text(path: Path, read: Callable[[str, Source], None], source: Source) -> None:
+    text = _decode(path.read_bytes(), source)
+    if re.search(r"[\x00-\x08\x0e-\x1f]", text[:10_000]):
+        source.faults.append(Fault(str(path), "this is no text", f"name a file of {FORMATS}, by its usual ending"))
+    else:
+        read(text, source)
 
 
 def _decode(content: bytes, source: Source) -> str:

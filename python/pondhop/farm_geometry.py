@@ -26,6 +26,12 @@ MAX_GAP_M = 20_000.0
 EARTH_RADIUS_M = 6_371_008.8
 """Mean radius of the Earth, for distances that need not be exact."""
 
+METRES_PER_DEGREE = math.radians(EARTH_RADIUS_M)
+"""Length of a degree of latitude."""
+
+MIN_AREA_M2 = 0.01
+"""An outline around less encloses nothing but rounding noise of its corners."""
+
 
 def exchanged(position: LonLat) -> bool:
     """Whether a position makes sense only with its two numbers exchanged."""
@@ -52,7 +58,7 @@ def check_coordinates(features: Sequence[Feature]) -> list[Fault]:
                 Fault(
                     feature.place,
                     f"longitude {lon:g}, latitude {lat:g} look exchanged",
-                    f"write longitude {lat:g} and latitude {lon:g}; GeoJSON has longitude first",
+                    f"write longitude {lat:g} and latitude {lon:g}; in a pair, longitude comes first",
                 )
             )
             continue
@@ -93,11 +99,15 @@ def check_polygon(place: str, rings: Sequence[Ring]) -> list[Fault]:
         if len(set(ring)) < 3:
             message = f"the outline has {len(set(ring))} different corners"
             return [Fault(place, message, "give a pond at least three corners, or make it a Point")]
+    # The hull, because the two halves of an outline that crosses itself may cancel out.
+    hull_m2 = (
+        shapely.LineString(rings[0]).convex_hull.area * METRES_PER_DEGREE**2 * math.cos(math.radians(rings[0][0][1]))
+    )
+    if hull_m2 < MIN_AREA_M2:
+        return [Fault(place, "the outline encloses no area", "draw around the water, or make the pond a Point")]
     polygon = shapely.Polygon(rings[0], rings[1:])
     if polygon.is_valid:
         return []
-    if shapely.Polygon(rings[0]).area == 0.0:
-        return [Fault(place, "the outline encloses no area", "draw around the water, or make the pond a Point")]
     reason, _, where = shapely.is_valid_reason(polygon).rstrip("]").partition("[")
     longitude, _, latitude = where.partition(" ")
     spot = f" at {float(longitude):.6f}, {float(latitude):.6f}" if latitude else ""
@@ -131,13 +141,19 @@ def area_deg2(rings: Sequence[Ring]) -> float:
     return float(shapely.Polygon(rings[0], rings[1:]).area)
 
 
+def extent_m(rings: Sequence[Ring]) -> float:
+    """Diagonal in metres of the box around a polygon."""
+    lons, lats = zip(*rings[0], strict=True)
+    return distance_m((min(lons), min(lats)), (max(lons), max(lats)))
+
+
 def distance_to_outline_m(point: LonLat, rings: Sequence[Ring]) -> float:
     """How far a place lies outside a polygon in metres; 0 inside."""
     import shapely
 
     shrink = math.cos(math.radians(point[1]))
     polygon = shapely.transform(shapely.Polygon(rings[0], rings[1:]), lambda lonlat: lonlat * [shrink, 1.0])
-    return math.radians(polygon.distance(shapely.Point(point[0] * shrink, point[1]))) * EARTH_RADIUS_M
+    return float(polygon.distance(shapely.Point(point[0] * shrink, point[1]))) * METRES_PER_DEGREE
 
 
 def ponds_within_ponds(points: Sequence[LonLat], outlines: Sequence[tuple[Ring, ...]]) -> list[tuple[int, int]]:

@@ -17,6 +17,7 @@ from pondhop.errors import Fault
 from pondhop.farm_features import Feature, Geometry, LonLat, Source, is_blank, normal_name, number_of
 
 Axis = Literal["lon", "lat"]
+_AXES: tuple[Axis, Axis] = ("lon", "lat")
 
 _LON = r"(?:gps)?(?:longitude|long|lon|lng|x)"
 _LAT = r"(?:gps)?(?:latitude|lat|y)"
@@ -41,7 +42,7 @@ HEADER_ACTION = "name the columns in the first line, as in: pond,lon,lat"
 
 @dataclass(frozen=True)
 class _Columns:
-    """Which column holds what: ``corners`` has column indices of longitude and latitude, four times or for one point."""
+    """Which column holds what: ``corners`` has column indices of longitude and latitude, four times or for a point."""
 
     names: tuple[str, ...]
     corners: tuple[tuple[int, int], ...]
@@ -76,6 +77,8 @@ def read_table(text: str, source: Source) -> None:
     columns = _find_columns(rows[0][1], source)
     if columns is None:
         return
+    if len(rows) == 1:
+        source.faults.append(Fault("file", "the table has no line but the first", "add a line for each pond"))
     for line, row in rows[1:]:
         _read_row(line, row, delimiter != ",", columns, source)
 
@@ -83,7 +86,7 @@ def read_table(text: str, source: Source) -> None:
 def _axis(name: str) -> tuple[Axis, str] | None:
     """Which coordinate a column holds, and of which corner: ``lat_ul`` and ``UL Latitude`` are both (lat, ul)."""
     plain = normal_name(name)
-    for axis, pattern in (("lon", _LON), ("lat", _LAT)):
+    for axis, pattern in zip(_AXES, (_LON, _LAT), strict=True):
         corner = "|".join(sorted(_CORNERS, key=len, reverse=True))
         for form in (
             rf"{pattern}{_UNIT}(?P<corner>{corner})?{_UNIT}",
@@ -91,7 +94,7 @@ def _axis(name: str) -> tuple[Axis, str] | None:
         ):
             match = re.fullmatch(form, plain)
             if match:
-                return ("lon" if axis == "lon" else "lat"), match["corner"] or ""
+                return axis, match["corner"] or ""
     return None
 
 
@@ -108,34 +111,31 @@ def _find_columns(header: Sequence[str], source: Source) -> _Columns | None:
             source.faults.append(Fault("line 1", message, "keep one of them"))
             return None
         found[key] = index
-    labels = {corner for _, corner in found if corner}
     if wkt is None and not found:
-        seen = (
-            "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {', '.join(names)[:80]}"
-        )
+        shown = ", ".join(names)[:80]
+        seen = "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {shown}"
         message = f"no longitude and latitude columns; the first line has {seen}"
         source.faults.append(Fault("line 1", message, HEADER_ACTION))
         return None
-    if wkt is not None and not found:
+    if not found:
         return _Columns(names, (), wkt, is_compass=False)
-    if not labels and {("lon", ""), ("lat", "")} <= found.keys():
-        return _Columns(names, ((found["lon", ""], found["lat", ""]),), None, is_compass=False)
+    labels = sorted({corner for _, corner in found if corner})
     by_corner = {_CORNERS[label]: label for label in labels}
-    missing = (
-        [
-            f"{axis} of corner {by_corner.get(c, c + 1)}"
-            for c in range(4)
-            for axis in ("lon", "lat")
-            if by_corner.get(c) is None or (axis, by_corner[c]) not in found
-        ]
-        if labels
-        else [axis for axis in ("lon", "lat") if (axis, "") not in found]
-    )
-    if missing:
-        source.faults.append(Fault("line 1", f"no column for {', '.join(missing)}", HEADER_ACTION))
-        return None
-    corners = tuple((found["lon", by_corner[c]], found["lat", by_corner[c]]) for c in range(4))
-    return _Columns(names, corners, None, is_compass=not labels & {"1", "2", "3", "4"})
+    is_compass = not any(label.isdecimal() for label in labels)
+    expected = [
+        by_corner.get(corner, ("ul", "ll", "lr", "ur")[corner] if is_compass else str(corner + 1))
+        for corner in range(4)
+    ]
+    missing = [f"{axis} of corner {label}" for label in expected for axis in _AXES if (axis, label) not in found]
+    if not missing:
+        corners = tuple((found["lon", label], found["lat", label]) for label in expected)
+        return _Columns(names, corners, None, is_compass)
+    if not labels or any((axis, "") in found for axis in _AXES):
+        missing = [axis for axis in _AXES if (axis, "") not in found]
+        if not missing:
+            return _Columns(names, ((found["lon", ""], found["lat", ""]),), None, is_compass=False)
+    source.faults.append(Fault("line 1", f"no column for {', '.join(missing)}", HEADER_ACTION))
+    return None
 
 
 def _read_row(line: int, row: Sequence[str], has_decimal_comma: bool, columns: _Columns, source: Source) -> None:

@@ -6,7 +6,7 @@ import difflib
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -46,6 +46,9 @@ _RANGES = {
     "max_route_duration_s": (1.0, 1e6),
 }
 """Smallest and largest sensible value of each number."""
+
+_ASSUMABLE = ("speed_m_s", "transit_height_m", "leg_stop_s", "sampling", "dwell_s", "dip_height_m")
+"""Settings whose defaults are assumptions."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +92,7 @@ class Fleet:
     dip_height_m: float = 2.0
     max_route_length_m: float | None = None
     max_route_duration_s: float | None = None
-    assumptions: tuple[str, ...] = field(
-        default=("speed_m_s", "transit_height_m", "leg_stop_s", "sampling", "dwell_s", "dip_height_m"),
-        compare=False,
-        kw_only=True,
-    )
+    assumptions: tuple[str, ...] = field(default=_ASSUMABLE, compare=False, kw_only=True)
 
     def __post_init__(self) -> None:
         faults = _check(_settings(self))
@@ -154,9 +153,8 @@ def read_fleet(path: str | Path) -> Fleet:
     faults.extend(_check(known))
     if faults:
         raise InvalidInput(faults)
-    defaulted = [item.name for item in fields(Fleet) if item.name in names and item.default is not MISSING]
     values: dict[str, Any] = dict(known)
-    return Fleet(**values, assumptions=tuple(name for name in defaulted if name not in known))
+    return Fleet(**values, assumptions=tuple(name for name in _ASSUMABLE if name not in known))
 
 
 def _settings(fleet: Fleet) -> dict[str, object]:
