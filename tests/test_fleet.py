@@ -32,6 +32,18 @@ def test_a_metre_of_height_costs_descent_and_climb() -> None:
     assert replace(splashdown, transit_height_m=8.0).service_s - splashdown.service_s == pytest.approx(2.4)
 
 
+def test_dipping_lower_takes_longer() -> None:
+    assert Fleet(1, dip_height_m=1.0).service_s - Fleet(1).service_s == pytest.approx(2 / 3 + 0.4)
+    splashdown = Fleet(1, sampling="splashdown")
+    assert replace(splashdown, dip_height_m=1.0).service_s == splashdown.service_s
+
+
+def test_a_dip_above_the_transit_height_is_refused() -> None:
+    with pytest.raises(InvalidInput, match="dip_height_m: 7 m is not below"):
+        Fleet(1, dip_height_m=7.0)
+    assert Fleet(1, dip_height_m=7.0, sampling="splashdown").dip_height_m == 7.0
+
+
 @given(st.floats(2.1, 121.9), st.floats(0.0, 600.0), st.sampled_from(["hover-dip", "splashdown"]))
 def test_time_on_station_exceeds_the_dwell(height_m: float, dwell_s: float, sampling: str) -> None:
     fleet = Fleet(1, transit_height_m=height_m, dwell_s=dwell_s, sampling=sampling)  # type: ignore[arg-type]
@@ -43,8 +55,8 @@ def test_what_the_file_leaves_out_is_an_assumption(tmp_path: Path) -> None:
     path.write_text('num_drones = 3\nspeed_m_s = 5.0\nsampling = "splashdown"\nmax_route_duration_s = 900\n')
     fleet = read_fleet(path)
     assert fleet == Fleet(3, sampling="splashdown", max_route_duration_s=900)
-    assert fleet.assumptions == ("transit_height_m", "leg_stop_s", "dwell_s")
-    assert replace(fleet, dwell_s=9.0).assumptions == ("transit_height_m", "leg_stop_s")
+    assert fleet.assumptions == ("transit_height_m", "leg_stop_s", "dwell_s", "dip_height_m")
+    assert replace(fleet, dwell_s=9.0).assumptions == ("transit_height_m", "leg_stop_s", "dip_height_m")
 
 
 def test_a_fleet_made_directly_assumes_its_defaults() -> None:

@@ -130,7 +130,7 @@ def farm_plans(draw: st.DrawFn) -> FarmPlan:
     return make_plan(farm, fleet, [list(order[:cut]), list(order[cut:])])
 
 
-@settings(max_examples=40)
+@settings(max_examples=40, deadline=None)
 @given(farm_plan=farm_plans())
 def test_any_plan_survives_the_round_trip(farm_plan: FarmPlan, tmp_path_factory: pytest.TempPathFactory) -> None:
     tmp_path = tmp_path_factory.mktemp("plan")
