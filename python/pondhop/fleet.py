@@ -102,9 +102,8 @@ class Fleet:
         if faults:
             raise InvalidInput(faults)
         defaults = {item.name: item.default for item in fields(self)}
-        unused = () if self.sampling == "hover-dip" else ("dip_height_m",)
-        still_default = (name for name in self.assumptions if getattr(self, name) == defaults[name])
-        object.__setattr__(self, "assumptions", tuple(name for name in still_default if name not in unused))
+        still_default = tuple(name for name in self.assumptions if getattr(self, name) == defaults[name])
+        object.__setattr__(self, "assumptions", still_default)
 
     @property
     def service_s(self) -> float:
