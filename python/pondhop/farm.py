@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import difflib
+import gc
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -128,13 +130,14 @@ def read_farm(path: str | Path, *, depot: LonLat | None = None) -> Farm:
     InvalidInput
         With every fault of the file: its place, what is wrong, what to do.
     """
-    source = read_source(Path(path))
-    reader = _FarmReader(source)
-    reader.read_features(depot)
-    reader.check_ponds()
-    if depot is not None:
-        reader.set_depot(depot)
-    reader.check_distances(is_depot_given=depot is not None)
+    with _collection_paused():
+        source = read_source(Path(path))
+        reader = _FarmReader(source)
+        reader.read_features(depot)
+        reader.check_ponds()
+        if depot is not None:
+            reader.set_depot(depot)
+        reader.check_distances(is_depot_given=depot is not None)
     if reader.faults or reader.depot is None:
         raise InvalidInput(_limited(reader.faults))
     return Farm(
@@ -146,6 +149,21 @@ def read_farm(path: str | Path, *, depot: LonLat | None = None) -> Farm:
         tuple(reader.fences),
         tuple(source.notes),
     )
+
+
+@contextmanager
+def _collection_paused() -> Iterator[None]:
+    """Spare the garbage collector the millions of small objects of a large file, none of which is garbage.
+
+    It would walk through all of them again and again: 50 MB take 11 s of processor time without it and 25 s with it.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def write_farm(path: str | Path, farm: Farm) -> None:

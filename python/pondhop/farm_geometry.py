@@ -102,7 +102,8 @@ def _polygon(rings: Area) -> shapely.Polygon:
     """The polygon as shapely has it; remembered, because each one is asked several questions in a row."""
     import shapely
 
-    return shapely.polygons(np.array(rings[0]), holes=[np.array(ring) for ring in rings[1:]] or None)
+    shell, *holes = (shapely.linearrings(np.array(ring)) for ring in rings)
+    return shapely.Polygon(shell, holes)
 
 
 def check_polygon(place: str, rings: Area) -> list[Fault]:
@@ -174,7 +175,7 @@ def ponds_within_ponds(points: Sequence[LonLat], outlines: Sequence[Area]) -> li
     outer_rings = [outlines[index][0] for index in has_outline]
     corners = np.array([position for ring in outer_rings for position in ring])
     ring_of_corner = np.repeat(np.arange(len(outer_rings)), [len(ring) for ring in outer_rings])
-    tree = shapely.STRtree(shapely.polygons(shapely.linearrings(corners, indices=ring_of_corner)))
+    tree = shapely.STRtree(np.asarray(shapely.polygons(shapely.linearrings(corners, indices=ring_of_corner))))
     inside, container = tree.query(shapely.points(np.array(points)), predicate="within")
     pairs = ((int(i), has_outline[int(j)]) for i, j in zip(inside, container, strict=True))
     return sorted((i, j) for i, j in pairs if i != j)
