@@ -1,10 +1,12 @@
 """The command line: contracts, exit codes, and how bad input and bugs are answered."""
 
+import io
 import json
 import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -266,6 +268,31 @@ def test_a_bug_asks_for_a_report(run: Run, farms: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(sys, "argv", ["pondhop", "--debug", "solve", str(farms), "--routes", "2"])
     with pytest.raises(ZeroDivisionError):
         cli.main()
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_bar_shows_up_on_a_terminal_when_something_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(cli, "SECONDS_BEFORE_PROGRESS", 0.0)
+    with cli._progress("Planning", total=2) as advance:
+        advance()
+        while "Planning" not in terminal.getvalue():
+            time.sleep(0.01)
+    assert "50%" in terminal.getvalue()
+
+
+def test_no_bar_shows_up_where_nothing_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    with cli._progress("Planning", total=1) as advance:
+        advance()
+    assert terminal.getvalue() == ""
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
