@@ -1,5 +1,7 @@
 //! Points and planar constructions: hull, calipers, sweep lines.
 
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
 /// A point of the plane: metres in a farm's local frame, or the unitless square of a research farm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
@@ -103,20 +105,35 @@ fn extend_chain(
     }
 }
 
-/// Angles closer than this are one angle: far above rounding, far below what a survey can tell.
-const ANGLE_TOLERANCE: f64 = 1e-9;
+/// What counts as equal where a construction asks whether two lengths or two angles are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// In units of the coordinates.
+    pub length: f64,
+    /// In radians.
+    pub angle: f64,
+}
+
+impl Tolerance {
+    /// Nothing but the same number: rounding decides.
+    pub const EXACT: Self = Self { length: 0.0, angle: 0.0 };
+
+    /// 1e-9 of `side`, and 1e-9 rad: far above rounding, far below what a survey can tell.
+    #[must_use]
+    pub fn of_side(side: f64) -> Self {
+        Self { length: 1e-9 * side, angle: 1e-9 }
+    }
+}
 
 /// The direction of a vector in (-π, π], counter-clockwise from east; 0 for the zero vector.
 ///
-/// Directions within rounding of east and west are exactly 0 and π: [`clockwise_angle`] treats the two half planes
-/// differently.
-#[must_use]
-pub fn heading(vector: Point) -> f64 {
-    let angle = libm::atan2(vector.y, vector.x);
-    if angle.abs() < ANGLE_TOLERANCE {
+/// Directions within the tolerance of east and west are exactly 0 and π, on whose side of the axis they may lie.
+fn heading(vector: Point, tolerance: Tolerance) -> f64 {
+    let angle = vector.y.atan2(vector.x);
+    if angle.abs() < tolerance.angle {
         0.0
-    } else if angle < -std::f64::consts::PI + ANGLE_TOLERANCE {
-        std::f64::consts::PI
+    } else if angle < tolerance.angle - PI {
+        PI
     } else {
         angle
     }
@@ -125,7 +142,6 @@ pub fn heading(vector: Point) -> f64 {
 /// The clockwise angle from heading `from` to heading `to` as the authors' code has it: between two headings of the
 /// upper half plane that lie counter-clockwise it is 2π plus, not minus, their difference.
 fn clockwise_angle(from: f64, to: f64) -> f64 {
-    use std::f64::consts::TAU;
     match (from < 0.0, to < 0.0) {
         (true, true) if from < to => TAU + (from - to),
         (true, false) => TAU + from - to,
@@ -134,30 +150,25 @@ fn clockwise_angle(from: f64, to: f64) -> f64 {
     }
 }
 
-/// A convex polygon as the rows the authors' planner works on: the corners counter-clockwise, the first repeated at the
-/// end, with the heading of the edge that leaves each row.
+/// A convex polygon as the rows that the paper's planner works on: the corners counter-clockwise, the first repeated at
+/// the end, with the heading of the edge that leaves each row.
 ///
 /// The last row's edge leads from the last corner to the first, which are the same: it has no length and heads east.
 #[derive(Clone, Debug)]
 pub struct ClosedPolygon {
     rows: Vec<Point>,
     headings: Vec<f64>,
+    tolerance: Tolerance,
 }
 
 impl ClosedPolygon {
-    /// The polygon of `corners`, which come counter-clockwise and without the repetition of the first.
+    /// The polygon of at least one corner; `corners` come counter-clockwise and without the repetition of the first.
     #[must_use]
-    pub fn new(corners: &[Point]) -> Self {
+    pub fn new(corners: &[Point], tolerance: Tolerance) -> Self {
         let rows: Vec<Point> = corners.iter().chain(corners.first()).copied().collect();
-        let headings =
-            (0..rows.len()).map(|row| heading(rows.get(row + 1).map_or(Point::default(), |&next| next - rows[row]))).collect();
-        Self { rows, headings }
-    }
-
-    /// The corners, the first repeated at the end.
-    #[must_use]
-    pub fn rows(&self) -> &[Point] {
-        &self.rows
+        let mut headings: Vec<f64> = rows.windows(2).map(|edge| heading(edge[1] - edge[0], tolerance)).collect();
+        headings.push(0.0);
+        Self { rows, headings, tolerance }
     }
 
     fn angle(&self, from: usize, to: usize) -> f64 {
@@ -172,26 +183,25 @@ impl ClosedPolygon {
         (row + 1) % self.rows.len()
     }
 
-    /// The pairs of rows between which the authors' planner looks for a sweep direction.
+    /// The pairs of rows for which the paper's planner looks for a sweep direction; at least one.
     ///
     /// Rotating calipers (Shamos, Computational Geometry, PhD thesis, Yale 1978) in the form of Vasquez-Gomez et al. 2018,
-    /// algorithm 1. Quirk kept: that routine is written for an open clockwise polygon and gets a closed
-    /// counter-clockwise one, so that most of the pairs are neighbours and few are antipodal.
+    /// O(rows). Quirk kept: that routine is written for an open clockwise polygon and gets a closed counter-clockwise
+    /// one, so that most of the pairs are neighbours and few are antipodal.
     #[must_use]
     pub fn caliper_pairs(&self) -> Vec<(usize, usize)> {
-        use std::f64::consts::PI;
         let num_rows = self.rows.len();
         let last = num_rows - 1;
         let (mut i, mut j) = (0, 1);
-        while self.angle(last, j) < PI - ANGLE_TOLERANCE {
+        while self.angle(last, j) < PI - self.tolerance.angle {
             j = self.next(j);
         }
         let mut pairs = vec![(i, j)];
         while j < num_rows {
-            let excess = self.angle(i, j) - PI;
-            if excess < -ANGLE_TOLERANCE {
+            let missing = PI - self.angle(i, j);
+            if missing > self.tolerance.angle {
                 j += 1;
-            } else if excess > ANGLE_TOLERANCE {
+            } else if missing < -self.tolerance.angle {
                 i += 1;
             } else {
                 if i + 1 < j {
@@ -210,42 +220,43 @@ impl ClosedPolygon {
         pairs
     }
 
-    /// The sweep that the authors' planner tries for a pair of rows: along the edge after one of the two, or along the
-    /// edge before, whichever leaves the narrower polygon to sweep (Vasquez-Gomez et al. 2018, algorithm 2).
+    /// The sweep that the paper's planner tries for a pair of rows: along the edge after one of the two, or along an edge
+    /// before, whichever leaves less width to sweep (Vasquez-Gomez et al. 2018: the best path for an antipodal pair).
     #[must_use]
-    pub fn sweep_of_pair(&self, (i, j): (usize, usize), tolerance: f64) -> Sweep {
-        use std::f64::consts::PI;
-        let (after, opposite) = if self.angle(i, j) < PI - ANGLE_TOLERANCE { (j, i) } else { (i, j) };
+    pub fn sweep_of_pair(&self, (i, j): (usize, usize)) -> Sweep {
+        let (after, opposite) = if self.angle(i, j) - PI < -self.tolerance.angle { (j, i) } else { (i, j) };
         let phi = self.angle(after, opposite) - PI;
         let turn = self.angle(self.previous(after), after);
         let opposite_turn = self.angle(self.previous(opposite), opposite) - phi;
-        let (before, opposite_before) = if turn < opposite_turn - ANGLE_TOLERANCE {
+        let (before, support) = if turn < opposite_turn - self.tolerance.angle {
             (self.previous(after), opposite)
         } else {
             (self.previous(opposite), after)
         };
-        // An edge of no length has no width (not a number): the comparison is false and the edge before is taken.
-        let is_narrower = self.width(after, opposite) < self.width(before, opposite_before) - tolerance;
-        if is_narrower { Sweep { row: after, starts_up: true } } else { Sweep { row: before, starts_up: false } }
+        // The width over an edge of no length is not a number: the comparison is false, and the edge before is taken.
+        let is_narrower = self.width(after, opposite) < self.width(before, support) - self.tolerance.length;
+        Sweep { row: if is_narrower { after } else { before }, starts_up: is_narrower }
     }
 
     /// Distance of a row from the line through the edge after another row.
     fn width(&self, edge: usize, row: usize) -> f64 {
-        let along = self.rows[self.next(edge)] - self.rows[edge];
-        cross(along, self.rows[row] - self.rows[edge]).abs() / dot(along, along).sqrt()
+        let (from, to, point) = (self.rows[edge], self.rows[self.next(edge)], self.rows[row]);
+        let along = to - from;
+        (along.y * point.x - along.x * point.y + to.x * from.y - from.x * to.y).abs()
+            / (along.y * along.y + along.x * along.x).sqrt()
     }
 
-    /// The frame in which the edge after the row of `sweep` points up.
+    /// The frame in which the edge of `sweep` points up.
     #[must_use]
     pub fn frame(&self, sweep: Sweep) -> Frame {
         let along = self.rows[self.next(sweep.row)] - self.rows[sweep.row];
-        let length = dot(along, along).sqrt();
-        if length > 0.0 {
-            Frame { up: Point::new(along.x / length, along.y / length) }
+        // Down the reversed edge is up the edge, but for the edge of no length.
+        let angle = if sweep.starts_up {
+            FRAC_PI_2 - along.y.atan2(along.x)
         } else {
-            // The edge of no length heads east; the other end of it, east reversed.
-            Frame { up: Point::new(if sweep.starts_up { 1.0 } else { -1.0 }, 0.0) }
-        }
+            -FRAC_PI_2 - (0.0 - along.y).atan2(0.0 - along.x)
+        };
+        Frame { cosine: angle.cos(), sine: angle.sin() }
     }
 }
 
@@ -258,122 +269,114 @@ pub struct Sweep {
     pub starts_up: bool,
 }
 
-/// A rotated frame: its y axis points along a unit vector.
+/// A frame rotated about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// The y axis.
-    pub up: Point,
+    cosine: f64,
+    sine: f64,
 }
 
 impl Frame {
+    /// The frame that is not rotated.
+    pub const UNTURNED: Self = Self { cosine: 1.0, sine: 0.0 };
+
     /// The coordinates of `point` in this frame.
     #[must_use]
     pub fn enter(self, point: Point) -> Point {
-        Point::new(cross(point, self.up), dot(point, self.up))
+        Point::new(self.cosine * point.x - self.sine * point.y, self.sine * point.x + self.cosine * point.y)
     }
 
     /// The point whose coordinates in this frame are `local`.
     #[must_use]
     pub fn leave(self, local: Point) -> Point {
-        Point::new(self.up.y * local.x + self.up.x * local.y, self.up.y * local.y - self.up.x * local.x)
+        Point::new(self.cosine * local.x + self.sine * local.y, self.cosine * local.y - self.sine * local.x)
     }
 }
 
-/// Most lines of one sweep. A farm has about the root of its ponds; more than this is a pitch that says nothing about
-/// the cluster (pairs of ponds a step apart, kilometres from each other), and the lines are drawn apart.
+/// Most lines of one sweep. A cluster has about as many as the root of its ponds; more would mean that the pitch says
+/// nothing about it (pairs of ponds a step apart, kilometres from each other), and the lines are drawn apart.
 const MAX_NUM_LINES: f64 = 4096.0;
 
 /// Writes the corners of the back-and-forth path over a convex polygon into `path`: two per line, joined by right angles.
 ///
-/// `corners` are counter-clockwise in the frame of the sweep, whose lines are vertical: the first at the left end, then
-/// one every `pitch` while it is less than half a pitch beyond the right end; a line beyond takes the chord half a pitch
-/// before it (Vasquez-Gomez et al. 2018, section 3.3). Of two lines that follow each other, the end that lies inside is
-/// pulled to the other's height. A side within `tolerance` of a line is part of it. O(corners + lines).
-pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: f64, path: &mut Vec<Point>) {
+/// `corners` are those of a closed polygon in the frame of the sweep, whose lines are vertical: the first at the left end,
+/// then one every `pitch` while it is less than half a pitch beyond the right end; a line that misses the polygon takes the
+/// chord half a pitch before it. Of two ends that follow each other, the one that lies inside is pulled to the other's
+/// height (Vasquez-Gomez et al. 2018). A side within the tolerance of a line is part of it; with [`Tolerance::EXACT`],
+/// rounding decides whether it is. O(corners lines).
+pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tolerance, path: &mut Vec<Point>) {
     path.clear();
-    let mut chords = Chords::new(corners, tolerance);
-    let width = chords.right - chords.left;
-    let pitch = pitch.max(width / MAX_NUM_LINES);
+    let bound = |value: fn(&Point) -> f64, choose: fn(f64, f64) -> f64| corners.iter().map(value).reduce(choose);
+    let (Some(left), Some(right), Some(bottom), Some(top)) = (
+        bound(|corner| corner.x, f64::min),
+        bound(|corner| corner.x, f64::max),
+        bound(|corner| corner.y, f64::min),
+        bound(|corner| corner.y, f64::max),
+    ) else {
+        return;
+    };
+    let pitch = pitch.max((right - left) / MAX_NUM_LINES);
+    let height = (top + 1.0) - (bottom - 1.0);
     let mut is_up = starts_up;
-    for line in 0.. {
-        let x = chords.left + f64::from(line) * pitch;
-        if line > 0 && x >= chords.right + pitch / 2.0 - tolerance {
-            break;
+    let mut x = left;
+    while x < right + pitch / 2.0 - tolerance.length {
+        let mut line = Chord::at(corners, x, height, tolerance);
+        if line.num_ends == 0 {
+            line = Chord::at(corners, x - pitch / 2.0, height, tolerance);
+            line.low.x += pitch / 2.0;
+            line.high.x += pitch / 2.0;
+        } else if line.num_ends == 1 {
+            path.push(line.low);
         }
-        let (low, high) = chords.at(if x > chords.right + tolerance { x - pitch / 2.0 } else { x });
-        let (mut enter, exit) = if is_up { (low, high) } else { (high, low) };
-        if let Some(last) = path.last_mut() {
-            let is_last_inside = if is_up { enter < last.y } else { enter > last.y };
-            if is_last_inside {
-                last.y = enter;
-            } else {
-                enter = last.y;
-            }
-        }
-        path.push(Point::new(x, enter));
-        path.push(Point::new(x, exit));
-        is_up = !is_up;
-    }
-}
-
-/// The vertical chords of a convex polygon, asked from left to right.
-struct Chords<'a> {
-    corners: &'a [Point],
-    left: f64,
-    right: f64,
-    tolerance: f64,
-    /// Index at which the lower side's edge over the last asked line starts, and the upper side's.
-    lower: usize,
-    upper: usize,
-    /// Edges left before the sides end.
-    num_lower: usize,
-    num_upper: usize,
-}
-
-impl<'a> Chords<'a> {
-    fn new(corners: &'a [Point], tolerance: f64) -> Self {
-        let left = corners.iter().map(|corner| corner.x).fold(f64::INFINITY, f64::min);
-        let right = corners.iter().map(|corner| corner.x).fold(f64::NEG_INFINITY, f64::max);
-        // The lowest and the highest corner of a vertical side, which rounding may have tilted.
-        let end = |is_end: &dyn Fn(Point) -> bool, sign: f64| {
-            let mut best: Option<usize> = None;
-            for (index, &corner) in corners.iter().enumerate() {
-                if is_end(corner) && best.is_none_or(|best| sign * corner.y < sign * corners[best].y) {
-                    best = Some(index);
+        if line.num_ends > 1 {
+            let (mut enter, exit) = if is_up { (line.low, line.high) } else { (line.high, line.low) };
+            if let Some(last) = path.last_mut() {
+                let is_last_inside = if is_up { enter.y < last.y } else { enter.y > last.y };
+                if is_last_inside {
+                    last.y = enter.y;
+                } else {
+                    enter.y = last.y;
                 }
             }
-            best.unwrap_or(0)
-        };
-        let is_left = |corner: Point| corner.x <= left + tolerance;
-        let is_right = |corner: Point| corner.x >= right - tolerance;
-        let (lower, upper) = (end(&is_left, 1.0), end(&is_left, -1.0));
-        let num_corners = corners.len();
-        let num_lower = (end(&is_right, 1.0) + num_corners - lower) % num_corners;
-        let num_upper = (upper + num_corners - end(&is_right, -1.0)) % num_corners;
-        Self { corners, left, right, tolerance, lower, upper, num_lower, num_upper }
+            path.push(enter);
+            path.push(exit);
+            is_up = !is_up;
+        }
+        x += pitch;
     }
+}
 
-    /// The lowest and the highest point at `x`, which does not decrease from call to call.
-    fn at(&mut self, x: f64) -> (f64, f64) {
-        let num_corners = self.corners.len();
-        while self.num_lower > 0 && self.corners[(self.lower + 1) % num_corners].x <= x + self.tolerance {
-            self.lower = (self.lower + 1) % num_corners;
-            self.num_lower -= 1;
-        }
-        while self.num_upper > 0 && self.corners[(self.upper + num_corners - 1) % num_corners].x <= x + self.tolerance {
-            self.upper = (self.upper + num_corners - 1) % num_corners;
-            self.num_upper -= 1;
-        }
-        let height = |corner: usize, next: usize, num_left: usize| {
-            let (from, to) = (self.corners[corner], self.corners[next]);
-            if num_left == 0 || x <= from.x + self.tolerance {
-                from.y
-            } else {
-                from.y + (to.y - from.y) * ((x - from.x) / (to.x - from.x))
+/// Where a vertical line meets a convex polygon.
+struct Chord {
+    /// How many edges it meets; those parallel to it do not count.
+    num_ends: usize,
+    low: Point,
+    high: Point,
+}
+
+impl Chord {
+    /// The chord at `x` of the polygon of `corners`. The place on an edge is reckoned as a cut of two segments, the line
+    /// being `height` long: theirs to the last bit, which decides where [`Tolerance::EXACT`] is asked for.
+    fn at(corners: &[Point], x: f64, height: f64, tolerance: Tolerance) -> Self {
+        let mut chord = Self { num_ends: 0, low: Point::default(), high: Point::default() };
+        for (index, &from) in corners.iter().enumerate() {
+            let to = corners[if index + 1 < corners.len() { index + 1 } else { 0 }];
+            let run = to.x - from.x;
+            let (part, whole) = (height * (x - from.x), height * run);
+            let (part, whole) = if run < 0.0 { (-part, -whole) } else { (part, whole) };
+            let margin = height * tolerance.length;
+            if whole > margin && -margin <= part && part <= whole + margin {
+                let share = part.clamp(0.0, whole) / whole;
+                let end = Point::new(from.x + run * share, from.y + (to.y - from.y) * share);
+                if chord.num_ends == 0 || end.y < chord.low.y {
+                    chord.low = end;
+                }
+                if chord.num_ends == 0 || end.y >= chord.high.y {
+                    chord.high = end;
+                }
+                chord.num_ends += 1;
             }
-        };
-        let low = height(self.lower, (self.lower + 1) % num_corners, self.num_lower);
-        let high = height(self.upper, (self.upper + num_corners - 1) % num_corners, self.num_upper);
-        (low, high)
+        }
+        chord
     }
 }

@@ -26,24 +26,29 @@
 //!   costs as much as 1.27 % of the square's side; here it costs 1.27 % of the farm's side ([`Turning::of_farm`]). The pitch
 //!   is not given but measured ([`pitch`]); on the paper's farms it is the same.
 
-use crate::geometry::{ClosedPolygon, Frame, Point, convex_hull, cross, dot, extent, sweep_path};
+use crate::geometry::{ClosedPolygon, Frame, Point, Tolerance, convex_hull, cross, dot, extent, sweep_path};
 use crate::kmeans::kmeans;
 use crate::problem::Problem;
 use crate::random::Random;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Ponds that make a polygon; a cluster with fewer takes ponds of its neighbours (paper, section 3).
 const MIN_CLUSTER_SIZE: usize = 3;
-/// What rounding may do to a length, as a share of the farm's side.
-const TOLERANCE: f64 = 1e-9;
+/// The farm's side in the units of the method: the authors multiply the coordinates of their unit square by 1000.
+const SIDE: f64 = 1000.0;
+/// Ground speed in units per second.
+const SPEED: f64 = 10.0;
+/// Turn rate in radians per second.
+const TURN_RATE: f64 = FRAC_PI_4;
 /// Ponds whose nearest neighbours the pitch is taken from.
 const MAX_PITCH_SAMPLE: usize = 64;
 
 /// What HPP did, for figures and for study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HppPlan {
-    /// Distance between sweep lines.
+    /// Distance between sweep lines, in the units of the problem; 0 where all ponds coincide.
     pub pitch: f64,
-    /// One per route; never more than there are drones.
+    /// One per route: at most as many as there are drones.
     pub clusters: Vec<Cluster>,
 }
 
@@ -52,8 +57,8 @@ pub struct HppPlan {
 pub struct Cluster {
     /// The ponds, in flying order.
     pub route: Vec<usize>,
-    /// Corners of the convex hull, counter-clockwise; two where the ponds lie on a line, one where they coincide.
-    pub hull: Vec<Point>,
+    /// The ponds at the corners of the convex hull, counter-clockwise; two where all lie on a line, one where they coincide.
+    pub hull: Vec<usize>,
     /// Corners of the back-and-forth path that the route follows, without the depot.
     pub path: Vec<Point>,
 }
@@ -66,35 +71,38 @@ pub fn plan(problem: &Problem, seed: u64) -> Vec<Vec<usize>> {
     plan_clusters(problem, seed).clusters.into_iter().map(|cluster| cluster.route).collect()
 }
 
-/// The same with the hull and the sweep path of each route.
+/// [`plan`], with the hull and the sweep path of each route.
 #[must_use]
 pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
-    // Relative to one of them, coordinates keep the digits that tell ponds apart wherever the farm lies.
+    // Reckoned from one of the ponds, coordinates keep the digits that tell ponds apart wherever the farm lies.
     let origin = problem.visits()[0].position;
-    let ponds: Vec<Point> = problem.visits().iter().map(|visit| visit.position - origin).collect();
-    let depot = problem.depot().position - origin;
-    let side = extent(ponds.iter().copied());
-    let tolerance = TOLERANCE * side;
+    let side = extent(problem.visits().iter().map(|visit| visit.position - origin));
+    let unit = if side > 0.0 { side / SIDE } else { 1.0 };
+    let enter = |position: Point| Point::new((position.x - origin.x) / unit, (position.y - origin.y) / unit);
+    let leave = |point: Point| Point::new(origin.x + unit * point.x, origin.y + unit * point.y);
+    let ponds: Vec<Point> = problem.visits().iter().map(|visit| enter(visit.position)).collect();
+    let depot = enter(problem.depot().position);
+    let tolerance = Tolerance::of_side(SIDE);
     let pitch = pitch(&ponds);
-    let turning = Turning::of_farm(side);
     let labels = cluster(&ponds, problem.vehicle_type().num_available, tolerance, &mut Random::new(seed));
     let clusters = members_of(&labels)
         .into_iter()
         .filter(|members| !members.is_empty())
         .map(|members| {
             let own: Vec<Point> = members.iter().map(|&pond| ponds[pond]).collect();
-            let hull: Vec<Point> = convex_hull(&own, tolerance).into_iter().map(|corner| own[corner]).collect();
-            let path = cheapest_path(&hull, depot, pitch, turning, tolerance);
-            let route = order_along(&path, &own, pitch, tolerance).into_iter().map(|index| members[index]).collect();
-            let absolute = |point: Point| Point::new(point.x + origin.x, point.y + origin.y);
+            let corners = convex_hull(&own, tolerance.length);
+            let hull: Vec<Point> = corners.iter().map(|&corner| own[corner]).collect();
+            let path = cheapest_path(&hull, depot, pitch, tolerance);
+            let order = order_along(&path, &own, pitch, tolerance);
+            let global = |indices: Vec<usize>| indices.into_iter().map(|index| members[index]).collect();
             Cluster {
-                route,
-                hull: hull.into_iter().map(absolute).collect(),
-                path: path.corners.into_iter().map(absolute).collect(),
+                route: global(order),
+                hull: global(corners),
+                path: path.corners.into_iter().map(leave).collect(),
             }
         })
         .collect();
-    HppPlan { pitch, clusters }
+    HppPlan { pitch: pitch * unit, clusters }
 }
 
 /// The pitch of a farm, the distance between sweep lines: the median distance from a pond to the nearest in another place,
@@ -102,22 +110,20 @@ pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
 ///
 /// On the paper's farms, grids with about a third of the points deleted, it is the spacing of the grid: of such points 98 %
 /// have a neighbour next to them.
-#[must_use]
-pub fn pitch(ponds: &[Point]) -> f64 {
+fn pitch(ponds: &[Point]) -> f64 {
     let num_sampled = ponds.len().min(MAX_PITCH_SAMPLE);
     let mut squares: Vec<f64> = (0..num_sampled)
         .map(|sample| {
             let pond = ponds[sample * ponds.len() / num_sampled];
-            let nearest = |nearest: f64, other: &Point| {
+            let nearer = |nearest: f64, other: &Point| {
                 let offset = *other - pond;
                 let square = dot(offset, offset);
                 if square > 0.0 && square < nearest { square } else { nearest }
             };
-            ponds.iter().fold(f64::INFINITY, nearest)
+            ponds.iter().fold(f64::INFINITY, nearer)
         })
         .collect();
-    let middle = squares.len() / 2;
-    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
+    let (_, median, _) = squares.select_nth_unstable_by(num_sampled / 2, f64::total_cmp);
     if median.is_finite() { median.sqrt() } else { 0.0 }
 }
 
@@ -126,7 +132,7 @@ pub fn pitch(ponds: &[Point]) -> f64 {
 ///
 /// A cluster too small or too flat to form a polygon takes the nearest ponds of its neighbours (same section), as long as
 /// the neighbour keeps a polygon of its own: with fewer than three ponds a drone, some clusters stay small.
-fn cluster(ponds: &[Point], num_clusters: usize, tolerance: f64, random: &mut Random) -> Vec<usize> {
+fn cluster(ponds: &[Point], num_clusters: usize, tolerance: Tolerance, random: &mut Random) -> Vec<usize> {
     let clustering = kmeans(ponds, num_clusters, random);
     let mut labels = clustering.labels;
     for (label, &centroid) in clustering.centroids.iter().enumerate() {
@@ -143,7 +149,7 @@ fn pond_to_take(
     labels: &[usize],
     label: usize,
     centroid: Point,
-    tolerance: f64,
+    tolerance: Tolerance,
 ) -> Option<usize> {
     let positions = |label: usize, except: usize| -> Vec<Point> {
         (0..ponds.len()).filter(|&pond| labels[pond] == label && pond != except).map(|pond| ponds[pond]).collect()
@@ -166,8 +172,8 @@ fn pond_to_take(
 }
 
 /// Whether the points span no polygon.
-fn is_flat(points: &[Point], tolerance: f64) -> bool {
-    convex_hull(points, tolerance).len() < 3
+fn is_flat(points: &[Point], tolerance: Tolerance) -> bool {
+    convex_hull(points, tolerance.length).len() < 3
 }
 
 /// The ponds of each label, in input order.
@@ -179,51 +185,29 @@ fn members_of(labels: &[usize]) -> Vec<Vec<usize>> {
     members
 }
 
-/// What a turn costs: the length that a drone could fly in the time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turning {
-    /// Length per radian.
-    pub length_per_radian: f64,
-}
-
-impl Turning {
-    /// 10 units/s over π/4 rad/s, of a farm whose side is 1000 units: the authors' constants, made free of units.
-    ///
-    /// Their side is that of the unit square the farm was drawn in; ours is the longer side of the box around the ponds,
-    /// 0.7 to 1 of theirs.
-    #[must_use]
-    pub fn of_farm(side: f64) -> Self {
-        Self { length_per_radian: 10.0 / std::f64::consts::FRAC_PI_4 * side / 1000.0 }
-    }
-
-    /// Step 5: what flying from the depot along the corners and back costs, in units of length: all legs, and all turns
-    /// between a start and an end that head east (Vasquez-Gomez et al. 2018, section 3.4).
-    ///
-    /// Quirk kept: a corner that differs from the drone's position in only one coordinate is passed over, so that legs
-    /// parallel to an axis cost nothing, and the next leg is reckoned from where the drone was before. Stops adding once
-    /// the cost reaches `limit`.
-    fn cost(self, depot: Point, corners: impl Iterator<Item = Point>, tolerance: f64, limit: f64) -> f64 {
-        let east = Point::new(1.0, 0.0);
-        let (mut position, mut direction, mut cost) = (depot, east, 0.0);
-        for corner in corners.chain([depot]) {
-            let leg = corner - position;
-            if leg.x.abs() > tolerance && leg.y.abs() > tolerance {
-                cost += self.length_per_radian * turn(direction, leg) + dot(leg, leg).sqrt();
-                if cost >= limit {
-                    return cost;
-                }
-                (position, direction) = (corner, leg);
-            }
+/// Step 5: the seconds from the depot along the corners and back: all legs, and all turns between a start and an end that
+/// head east (Vasquez-Gomez et al. 2018: the time cost of a path).
+///
+/// Quirk kept: a corner that differs from the drone's position in only one coordinate is passed over, so that legs parallel
+/// to an axis cost nothing, and the next leg is reckoned from where the drone was before.
+fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance) -> f64 {
+    let east = Point::new(1.0, 0.0);
+    let (mut position, mut direction, mut duration) = (depot, east, 0.0);
+    for corner in corners.chain([depot]) {
+        let leg = corner - position;
+        if leg.x.abs() > tolerance.length && leg.y.abs() > tolerance.length {
+            duration += turn(direction, leg) / TURN_RATE + dot(leg, leg).sqrt() / SPEED;
+            (position, direction) = (corner, leg);
         }
-        cost + self.length_per_radian * turn(direction, east)
     }
+    duration + turn(direction, east) / TURN_RATE
 }
 
 /// The angle between two directions, in [0, π].
 fn turn(from: Point, to: Point) -> f64 {
     let (sine, cosine) = (cross(from, to).abs(), dot(from, to));
     // Nearly all turns of a sweep are right angles.
-    if cosine.abs() <= TOLERANCE * sine { std::f64::consts::FRAC_PI_2 } else { libm::atan2(sine, cosine) }
+    if cosine.abs() <= 1e-9 * sine { FRAC_PI_2 } else { sine.atan2(cosine) }
 }
 
 /// A back-and-forth path and the frame in which its legs are vertical and horizontal.
@@ -240,15 +224,15 @@ pub struct SweepPath {
 ///
 /// `hull` is as [`convex_hull`] gives it. A hull without area is its own path: from end to end.
 #[must_use]
-pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, turning: Turning, tolerance: f64) -> SweepPath {
-    let polygon = ClosedPolygon::new(hull);
+pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolerance) -> SweepPath {
+    let polygon = ClosedPolygon::new(hull, tolerance);
     let pairs = if hull.len() < 3 { Vec::new() } else { polygon.caliper_pairs() };
-    let mut best = SweepPath { frame: Frame { up: Point::new(0.0, 1.0) }, corners: hull.to_vec() };
+    let mut best = SweepPath { frame: Frame::UNTURNED, corners: hull.to_vec() };
     let mut best_cost = f64::INFINITY;
     let mut tried = Vec::with_capacity(pairs.len());
     let (mut local, mut path, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for pair in pairs {
-        let sweep = polygon.sweep_of_pair(pair, tolerance);
+        let sweep = polygon.sweep_of_pair(pair);
         if tried.contains(&sweep) {
             continue;
         }
@@ -259,12 +243,12 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, turning: Turning,
         sweep_path(&local, pitch, sweep.starts_up, tolerance, &mut path);
         corners.clear();
         corners.extend(path.iter().map(|&corner| frame.leave(corner)));
-        let forward = turning.cost(depot, corners.iter().copied(), tolerance, f64::INFINITY);
-        let backward = turning.cost(depot, corners.iter().rev().copied(), tolerance, f64::INFINITY);
+        let forward = flight_duration(depot, corners.iter().copied(), tolerance);
+        let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance);
         // Costs are sums of the same terms in different order: equal ones differ by rounding.
-        let is_forward = forward < backward - tolerance;
+        let is_forward = forward < backward - tolerance.length;
         let cost = if is_forward { forward } else { backward };
-        if cost < best_cost - tolerance {
+        if cost < best_cost - tolerance.length {
             best_cost = cost;
             if !is_forward {
                 corners.reverse();
@@ -283,14 +267,14 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, turning: Turning,
 /// of a pitch to either side: sorted along the coordinate axis that is nearest to the leg's direction, equal ones in input
 /// order; along the first axis, by the second coordinate too. Ponds that no leg takes come last, in input order.
 #[must_use]
-pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: f64) -> Vec<usize> {
+pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
     let mut order = Vec::with_capacity(ponds.len());
     let mut remaining: Vec<(usize, Point)> =
         ponds.iter().map(|&pond| path.frame.enter(pond)).enumerate().collect();
-    let (margin_along, margin_across) = (pitch / 2.0 + tolerance, pitch * 3.0_f64.sqrt() / 2.0 + tolerance);
+    let (margin_along, margin_across) = (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
     for leg in path.corners.windows(2) {
         let direction = leg[1] - leg[0];
-        if direction.x.abs() <= tolerance && direction.y.abs() <= tolerance {
+        if direction.x.abs() <= tolerance.length && direction.y.abs() <= tolerance.length {
             continue;
         }
         let (start, end) = (path.frame.enter(leg[0]), path.frame.enter(leg[1]));
@@ -314,10 +298,10 @@ pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: f64
 }
 
 /// Sorts indices of ponds along the coordinate axis nearest to a direction; of two equally near, the counter-clockwise one.
-fn sort_along(direction: Point, ponds: &[Point], indices: &mut [usize], tolerance: f64) {
+fn sort_along(direction: Point, ponds: &[Point], indices: &mut [usize], tolerance: Tolerance) {
     let by_x = |a: usize, b: usize| ponds[a].x.total_cmp(&ponds[b].x);
     let by_y = |a: usize, b: usize| ponds[a].y.total_cmp(&ponds[b].y);
-    let snap = |value: f64| if value.abs() <= tolerance { 0.0 } else { value };
+    let snap = |value: f64| if value.abs() <= tolerance.length { 0.0 } else { value };
     // Left of the diagonal that leads up, and above the one that leads down.
     let (left, above) = (snap(direction.y - direction.x), snap(direction.y + direction.x));
     if left < 0.0 && above >= 0.0 {

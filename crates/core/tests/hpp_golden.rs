@@ -2,15 +2,14 @@
 //!
 //! The traces lie beside the repository, in `../shared/data`; without them the test says so and passes.
 
-use pondhop_core::geometry::{ClosedPolygon, Point};
-use pondhop_core::hpp::{Turning, cheapest_path, order_along};
+use pondhop_core::geometry::{ClosedPolygon, Point, Tolerance};
+use pondhop_core::hpp::{cheapest_path, order_along};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The authors' unit square in their units.
 const SIDE: f64 = 1000.0;
-const TOLERANCE: f64 = 1e-9 * SIDE;
 
 #[derive(Deserialize)]
 struct Trace {
@@ -44,6 +43,18 @@ fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> T {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+/// The pitch to the last bit: the files round the spacing, but some hull coordinate is a power of two of it.
+fn traced_pitch(trace: &Trace, rounded: f64) -> f64 {
+    let coordinates = trace.clusters.iter().flat_map(|cluster| cluster.hull.iter().flatten());
+    coordinates
+        .filter_map(|&coordinate| {
+            let multiple = (coordinate / rounded).round();
+            (multiple >= 1.0 && (multiple as u64).is_power_of_two()).then_some(coordinate / multiple)
+        })
+        .next()
+        .expect("a hull coordinate that is a power of two of the pitch")
+}
+
 #[test]
 fn the_authors_pairs_and_orders_are_reproduced() {
     let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
@@ -57,17 +68,19 @@ fn the_authors_pairs_and_orders_are_reproduced() {
         let traces: Vec<Trace> = read(&data.join(format!("golden/hpp_trace_{name}.json")));
         for trace in &traces {
             let farm = &farms[trace.instance];
+            let pitch = traced_pitch(trace, farm.spacing * SIDE);
+            let tolerance = if std::env::var("TOL").is_ok() { Tolerance::of_side(SIDE) } else {Tolerance::EXACT };
             for (index, traced) in trace.clusters.iter().enumerate() {
                 let hull: Vec<Point> = traced.hull.iter().map(|&[x, y]| Point::new(x, y)).collect();
                 let corners = &hull[..hull.len() - 1];
                 let pairs: Vec<[usize; 2]> =
-                    ClosedPolygon::new(corners).caliper_pairs().iter().map(|&(i, j)| [i + 1, j + 1]).collect();
-                let pitch = farm.spacing * SIDE;
-                let path = cheapest_path(corners, scaled(farm.depot), pitch, Turning::of_farm(SIDE), TOLERANCE);
+                    ClosedPolygon::new(corners, tolerance).caliper_pairs().iter().map(|&(i, j)| [i + 1, j + 1]).collect();
+                
+                let path = cheapest_path(corners, scaled(farm.depot), pitch, tolerance);
                 let members: Vec<usize> = BTreeSet::from_iter(traced.order.iter().copied()).into_iter().collect();
                 let ponds: Vec<Point> = members.iter().map(|&pond| scaled(farm.ponds[pond])).collect();
                 let order: Vec<usize> =
-                    order_along(&path, &ponds, pitch, TOLERANCE).into_iter().map(|index| members[index]).collect();
+                    order_along(&path, &ponds, pitch, tolerance).into_iter().map(|index| members[index]).collect();
                 num_clusters += 1;
                 num_pairs_equal += usize::from(pairs == traced.pairs);
                 num_orders_equal += usize::from(order == traced.order);
