@@ -1,5 +1,5 @@
 from collections.abc import Sequence
-from typing import final
+from typing import Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,15 @@ class Plan:
     def is_feasible(self) -> bool: ...
 
 @final
+class Separation:
+    @property
+    def overlap(self) -> float: ...
+    @property
+    def num_crossings(self) -> int: ...
+    @property
+    def num_depot_leg_crossings(self) -> int: ...
+
+@final
 class LocalFrame:
     def __init__(self, longitude_deg: float, latitude_deg: float) -> None: ...
     @property
@@ -63,3 +72,7 @@ class LocalFrame:
     def to_geographic(self, local_m: NDArray[np.float64]) -> NDArray[np.float64]: ...
 
 def evaluate(problem: Problem, routes: Sequence[Sequence[int]]) -> Plan: ...
+def generate(
+    num_ponds: int, seed: int, variant: Literal["authors", "paper"] = "authors"
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]: ...
+def separation(problem: Problem, routes: Sequence[Sequence[int]]) -> Separation: ...

@@ -1,6 +1,4 @@
-//! Points and planar constructions: hull, calipers, sweep lines.
-
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+//! Points and planar constructions.
 
 /// A point of the plane: metres in a farm's local frame, or the unitless square of a research farm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,16 +32,16 @@ impl std::ops::Sub for Point {
     }
 }
 
-/// Twice the area of the triangle `(0, a, b)`: positive where `b` lies to the left of `a`.
-#[must_use]
-pub fn cross(a: Point, b: Point) -> f64 {
-    a.x * b.y - a.y * b.x
-}
-
-/// Scalar product.
+/// Scalar product of two vectors.
 #[must_use]
 pub fn dot(a: Point, b: Point) -> f64 {
     a.x * b.x + a.y * b.y
+}
+
+/// Twice the signed area of the triangle `a`, `b`, `c`: positive if they turn left (counter-clockwise).
+#[must_use]
+pub fn cross(a: Point, b: Point, c: Point) -> f64 {
+    (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 }
 
 /// The longer side of the axis-parallel box around the points; 0 for none.
@@ -58,325 +56,155 @@ pub fn extent(points: impl Iterator<Item = Point>) -> f64 {
     (high.x - low.x).max(high.y - low.y).max(0.0)
 }
 
-/// The corners of the convex hull of `points`, as indices into them, counter-clockwise from the lowest of the leftmost.
+/// Indices of the corners of the convex hull of `points`, counter-clockwise from the lowest of the leftmost points.
 ///
-/// Corners nearer than `tolerance` to the line through their neighbours are left out, so that rounding makes no corner
-/// on a straight side. Flat points give the two ends, coinciding points one index, no point none. Andrew's monotone
-/// chain (Information Processing Letters 1979); O(n log n), O(n) where the points come sorted by x, then y.
+/// Points on an edge and repeated points are no corners: points on one line give its two ends, points in one place give
+/// one index. Of points in one place the first stands for all. Andrew's monotone chain (Andrew, Another efficient
+/// algorithm for convex hulls in two dimensions, Information Processing Letters 1979), O(n log n), and O(n) where the
+/// points come sorted.
 #[must_use]
-pub fn convex_hull(points: &[Point], tolerance: f64) -> Vec<usize> {
-    let mut sorted: Vec<usize> = (0..points.len()).collect();
-    sorted.sort_by(|&a, &b| {
-        let (a, b) = (points[a], points[b]);
-        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+pub fn convex_hull(points: &[Point]) -> Vec<usize> {
+    convex_hull_within(points, 0.0)
+}
+
+/// [`convex_hull`] without the corners that rounding makes on a straight edge: a point within `tolerance` of the line
+/// through its neighbours on the hull is no corner, and points within it of each other are in one place.
+#[must_use]
+pub fn convex_hull_within(points: &[Point], tolerance: f64) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    // Adding zero makes -0.0 equal to 0.0.
+    let key = |index: usize| (points[index].x + 0.0, points[index].y + 0.0);
+    order.sort_by(|&a, &b| {
+        let ((ax, ay), (bx, by)) = (key(a), key(b));
+        ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(a.cmp(&b))
     });
-    let mut hull: Vec<usize> = Vec::with_capacity(sorted.len().min(64));
-    extend_chain(points, sorted.iter().copied(), tolerance, 0, &mut hull);
-    let num_lower = hull.len();
-    extend_chain(points, sorted.iter().rev().copied(), tolerance, num_lower.saturating_sub(1), &mut hull);
-    if hull.len() > 1 {
+    let is_same_place = |one: usize, other: usize| {
+        (points[one].x - points[other].x).abs() <= tolerance && (points[one].y - points[other].y).abs() <= tolerance
+    };
+    order.dedup_by(|later, earlier| is_same_place(*later, *earlier));
+    let mut hull = half_hull(points, order.iter().copied(), tolerance);
+    if order.len() > 1 {
+        hull.pop();
+        hull.extend(half_hull(points, order.iter().rev().copied(), tolerance));
+        hull.pop();
+    }
+    // The corner where the two halves meet was tested against neither.
+    while hull.len() > 2 && is_flat_corner(points, [hull[hull.len() - 2], hull[hull.len() - 1], hull[0]], tolerance) {
         hull.pop();
     }
     hull
 }
 
-/// Adds one chain of the hull to those corners that are already there; `fixed` of them stay.
-fn extend_chain(
-    points: &[Point],
-    sorted: impl Iterator<Item = usize>,
-    tolerance: f64,
-    fixed: usize,
-    hull: &mut Vec<usize>,
-) {
+/// The corners below the line from the first of the sorted points to the last, both included.
+fn half_hull(points: &[Point], sorted: impl Iterator<Item = usize>, tolerance: f64) -> Vec<usize> {
+    let mut corners: Vec<usize> = Vec::new();
     for index in sorted {
-        let point = points[index];
-        if hull.last().is_some_and(|&last| (point.x - points[last].x).abs() + (point.y - points[last].y).abs() <= tolerance) {
-            continue;
+        while let [.., before, last] = corners[..]
+            && is_flat_corner(points, [before, last, index], tolerance)
+        {
+            corners.pop();
         }
-        while hull.len() >= fixed + 2 {
-            let (before, last) = (points[hull[hull.len() - 2]], points[hull[hull.len() - 1]]);
-            let chord = point - before;
-            if cross(last - before, chord) > tolerance * (chord.x.abs() + chord.y.abs()) {
-                break;
+        corners.push(index);
+    }
+    corners
+}
+
+/// Whether the second of three points lies to the left of the line from the first to the third, or within reach of it.
+fn is_flat_corner(points: &[Point], [before, corner, after]: [usize; 3], tolerance: f64) -> bool {
+    let reach = tolerance * ((points[after].x - points[before].x).abs() + (points[after].y - points[before].y).abs());
+    cross(points[before], points[corner], points[after]) <= reach
+}
+
+/// Corners of the intersection of two convex polygons, both given by their corners counter-clockwise; empty if they have no
+/// point in common. Where they only touch, the result has no area. Sutherland and Hodgman, Reentrant polygon clipping,
+/// Communications of the ACM 1974; O(k l) for k and l corners.
+#[must_use]
+pub fn convex_intersection(one: &[Point], other: &[Point]) -> Vec<Point> {
+    let mut clipped = one.to_vec();
+    for (corner, &from) in other.iter().enumerate() {
+        let to = other[(corner + 1) % other.len()];
+        let mut kept = Vec::with_capacity(clipped.len() + 1);
+        for (place, &here) in clipped.iter().enumerate() {
+            let before = clipped[(place + clipped.len() - 1) % clipped.len()];
+            let (side_before, side_here) = (cross(from, to, before), cross(from, to, here));
+            if (side_before > 0.0 && side_here < 0.0) || (side_before < 0.0 && side_here > 0.0) {
+                let share = side_before / (side_before - side_here);
+                kept.push(Point::new(before.x + share * (here.x - before.x), before.y + share * (here.y - before.y)));
             }
-            hull.pop();
-        }
-        hull.push(index);
-    }
-}
-
-/// What counts as equal where a construction asks whether two lengths or two angles are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance {
-    /// In units of the coordinates.
-    pub length: f64,
-    /// In radians.
-    pub angle: f64,
-}
-
-impl Tolerance {
-    /// Nothing but the same number: rounding decides.
-    pub const EXACT: Self = Self { length: 0.0, angle: 0.0 };
-
-    /// 1e-9 of `side`, and 1e-9 rad: far above rounding, far below what a survey can tell.
-    #[must_use]
-    pub fn of_side(side: f64) -> Self {
-        Self { length: 1e-9 * side, angle: 1e-9 }
-    }
-}
-
-/// The direction of a vector in (-π, π], counter-clockwise from east; 0 for the zero vector.
-///
-/// Directions within the tolerance of east and west are exactly 0 and π, on whose side of the axis they may lie.
-fn heading(vector: Point, tolerance: Tolerance) -> f64 {
-    let angle = vector.y.atan2(vector.x);
-    if angle.abs() < tolerance.angle {
-        0.0
-    } else if angle < tolerance.angle - PI {
-        PI
-    } else {
-        angle
-    }
-}
-
-/// The clockwise angle from heading `from` to heading `to` as the authors' code has it: between two headings of the
-/// upper half plane that lie counter-clockwise it is 2π plus, not minus, their difference.
-fn clockwise_angle(from: f64, to: f64) -> f64 {
-    match (from < 0.0, to < 0.0) {
-        (true, true) if from < to => TAU + (from - to),
-        (true, false) => TAU + from - to,
-        (false, false) if from < to => TAU - (from - to),
-        _ => from - to,
-    }
-}
-
-/// A convex polygon as the rows that the paper's planner works on: the corners counter-clockwise, the first repeated at
-/// the end, with the heading of the edge that leaves each row.
-///
-/// The last row's edge leads from the last corner to the first, which are the same: it has no length and heads east.
-#[derive(Clone, Debug)]
-pub struct ClosedPolygon {
-    rows: Vec<Point>,
-    headings: Vec<f64>,
-    tolerance: Tolerance,
-}
-
-impl ClosedPolygon {
-    /// The polygon of at least one corner; `corners` come counter-clockwise and without the repetition of the first.
-    #[must_use]
-    pub fn new(corners: &[Point], tolerance: Tolerance) -> Self {
-        let rows: Vec<Point> = corners.iter().chain(corners.first()).copied().collect();
-        let mut headings: Vec<f64> = rows.windows(2).map(|edge| heading(edge[1] - edge[0], tolerance)).collect();
-        headings.push(0.0);
-        Self { rows, headings, tolerance }
-    }
-
-    fn angle(&self, from: usize, to: usize) -> f64 {
-        clockwise_angle(self.headings[from], self.headings[to])
-    }
-
-    fn previous(&self, row: usize) -> usize {
-        row.checked_sub(1).unwrap_or(self.rows.len() - 1)
-    }
-
-    fn next(&self, row: usize) -> usize {
-        (row + 1) % self.rows.len()
-    }
-
-    /// The pairs of rows for which the paper's planner looks for a sweep direction; at least one.
-    ///
-    /// Rotating calipers (Shamos, Computational Geometry, PhD thesis, Yale 1978) in the form of Vasquez-Gomez et al. 2018,
-    /// O(rows). Quirk kept: that routine is written for an open clockwise polygon and gets a closed counter-clockwise
-    /// one, so that most of the pairs are neighbours and few are antipodal.
-    #[must_use]
-    pub fn caliper_pairs(&self) -> Vec<(usize, usize)> {
-        let num_rows = self.rows.len();
-        let last = num_rows - 1;
-        let (mut i, mut j) = (0, 1);
-        while self.angle(last, j) < PI - self.tolerance.angle {
-            j = self.next(j);
-        }
-        let mut pairs = vec![(i, j)];
-        while j < num_rows {
-            let missing = PI - self.angle(i, j);
-            if missing > self.tolerance.angle {
-                j += 1;
-            } else if missing < -self.tolerance.angle {
-                i += 1;
-            } else {
-                if i + 1 < j {
-                    pairs.push((i + 1, j));
-                }
-                if j < last {
-                    pairs.push((i, j + 1));
-                }
-                i += 1;
-                j += 1;
-            }
-            if j < num_rows && i < j {
-                pairs.push((i, j));
+            if side_here >= 0.0 {
+                kept.push(here);
             }
         }
-        pairs
+        clipped = kept;
     }
-
-    /// The sweep that the paper's planner tries for a pair of rows: along the edge after one of the two, or along an edge
-    /// before, whichever leaves less width to sweep (Vasquez-Gomez et al. 2018: the best path for an antipodal pair).
-    #[must_use]
-    pub fn sweep_of_pair(&self, (i, j): (usize, usize)) -> Sweep {
-        let (after, opposite) = if self.angle(i, j) - PI < -self.tolerance.angle { (j, i) } else { (i, j) };
-        let phi = self.angle(after, opposite) - PI;
-        let turn = self.angle(self.previous(after), after);
-        let opposite_turn = self.angle(self.previous(opposite), opposite) - phi;
-        let (before, support) = if turn < opposite_turn - self.tolerance.angle {
-            (self.previous(after), opposite)
-        } else {
-            (self.previous(opposite), after)
-        };
-        // The width over an edge of no length is not a number: the comparison is false, and the edge before is taken.
-        let is_narrower = self.width(after, opposite) < self.width(before, support) - self.tolerance.length;
-        Sweep { row: if is_narrower { after } else { before }, starts_up: is_narrower }
-    }
-
-    /// Distance of a row from the line through the edge after another row.
-    fn width(&self, edge: usize, row: usize) -> f64 {
-        let (from, to, point) = (self.rows[edge], self.rows[self.next(edge)], self.rows[row]);
-        let along = to - from;
-        (along.y * point.x - along.x * point.y + to.x * from.y - from.x * to.y).abs()
-            / (along.y * along.y + along.x * along.x).sqrt()
-    }
-
-    /// The frame in which the edge of `sweep` points up.
-    #[must_use]
-    pub fn frame(&self, sweep: Sweep) -> Frame {
-        let along = self.rows[self.next(sweep.row)] - self.rows[sweep.row];
-        // Down the reversed edge is up the edge, but for the edge of no length.
-        let angle = if sweep.starts_up {
-            FRAC_PI_2 - along.y.atan2(along.x)
-        } else {
-            -FRAC_PI_2 - (0.0 - along.y).atan2(0.0 - along.x)
-        };
-        Frame { cosine: angle.cos(), sine: angle.sin() }
-    }
+    clipped
 }
 
-/// A way to sweep a polygon: along which edge, and whether the first line is flown with the edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sweep {
-    /// The row whose outgoing edge the lines are parallel to.
-    pub row: usize,
-    /// Whether the first line is flown in the direction of the edge.
-    pub starts_up: bool,
+/// Area inside a simple polygon given by its corners, not closed: positive if they are counter-clockwise.
+#[must_use]
+pub fn signed_area(corners: &[Point]) -> f64 {
+    let Some(&origin) = corners.first() else { return 0.0 };
+    0.5 * corners.windows(2).map(|edge| cross(origin, edge[0], edge[1])).sum::<f64>()
 }
 
-/// A frame rotated about the origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    cosine: f64,
-    sine: f64,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
 
-impl Frame {
-    /// The frame that is not rotated.
-    pub const UNTURNED: Self = Self { cosine: 1.0, sine: 0.0 };
-
-    /// The coordinates of `point` in this frame.
-    #[must_use]
-    pub fn enter(self, point: Point) -> Point {
-        Point::new(self.cosine * point.x - self.sine * point.y, self.sine * point.x + self.cosine * point.y)
+    fn points(coordinates: &[(f64, f64)]) -> Vec<Point> {
+        coordinates.iter().map(|&(x, y)| Point::new(x, y)).collect()
     }
 
-    /// The point whose coordinates in this frame are `local`.
-    #[must_use]
-    pub fn leave(self, local: Point) -> Point {
-        Point::new(self.cosine * local.x + self.sine * local.y, self.cosine * local.y - self.sine * local.x)
+    #[test]
+    fn the_hull_of_a_square_has_four_corners() {
+        let square = points(&[(1.0, 1.0), (0.0, 2.0), (2.0, 0.0), (0.0, 0.0), (1.0, 0.0), (2.0, 2.0), (0.0, 0.0)]);
+        assert_eq!(convex_hull(&square), [3, 2, 5, 1]);
     }
-}
 
-/// Most lines of one sweep. A cluster has about as many as the root of its ponds; more would mean that the pitch says
-/// nothing about it (pairs of ponds a step apart, kilometres from each other), and the lines are drawn apart.
-const MAX_NUM_LINES: f64 = 4096.0;
+    #[test]
+    fn degenerate_hulls() {
+        assert!(convex_hull(&[]).is_empty());
+        assert_eq!(convex_hull(&points(&[(3.0, 1.0)])), [0]);
+        assert_eq!(convex_hull(&points(&[(3.0, 1.0), (3.0, 1.0), (3.0, 1.0)])), [0]);
+        assert_eq!(convex_hull(&points(&[(2.0, 2.0), (0.0, 0.0), (1.0, 1.0), (3.0, 3.0)])), [1, 3]);
+        assert_eq!(convex_hull(&points(&[(0.0, 0.0), (-0.0, 1.0), (0.0, 2.0)])), [0, 2]);
+    }
 
-/// Writes the corners of the back-and-forth path over a convex polygon into `path`: two per line, joined by right angles.
-///
-/// `corners` are those of a closed polygon in the frame of the sweep, whose lines are vertical: the first at the left end,
-/// then one every `pitch` while it is less than half a pitch beyond the right end; a line that misses the polygon takes the
-/// chord half a pitch before it. Of two ends that follow each other, the one that lies inside is pulled to the other's
-/// height (Vasquez-Gomez et al. 2018). A side within the tolerance of a line is part of it; with [`Tolerance::EXACT`],
-/// rounding decides whether it is. O(corners lines).
-pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tolerance, path: &mut Vec<Point>) {
-    path.clear();
-    let bound = |value: fn(&Point) -> f64, choose: fn(f64, f64) -> f64| corners.iter().map(value).reduce(choose);
-    let (Some(left), Some(right), Some(bottom), Some(top)) = (
-        bound(|corner| corner.x, f64::min),
-        bound(|corner| corner.x, f64::max),
-        bound(|corner| corner.y, f64::min),
-        bound(|corner| corner.y, f64::max),
-    ) else {
-        return;
-    };
-    let pitch = pitch.max((right - left) / MAX_NUM_LINES);
-    let height = (top + 1.0) - (bottom - 1.0);
-    let mut is_up = starts_up;
-    let mut x = left;
-    while x < right + pitch / 2.0 - tolerance.length {
-        let mut line = Chord::at(corners, x, height, tolerance);
-        if line.num_ends == 0 {
-            line = Chord::at(corners, x - pitch / 2.0, height, tolerance);
-            line.low.x += pitch / 2.0;
-            line.high.x += pitch / 2.0;
-        } else if line.num_ends == 1 {
-            path.push(line.low);
-        }
-        if line.num_ends > 1 {
-            let (mut enter, exit) = if is_up { (line.low, line.high) } else { (line.high, line.low) };
-            if let Some(last) = path.last_mut() {
-                let is_last_inside = if is_up { enter.y < last.y } else { enter.y > last.y };
-                if is_last_inside {
-                    last.y = enter.y;
-                } else {
-                    enter.y = last.y;
+    #[test]
+    fn the_area_of_a_rectangle_has_the_sign_of_its_orientation() {
+        let mut rectangle = points(&[(1.0, 1.0), (4.0, 1.0), (4.0, 3.0), (1.0, 3.0)]);
+        assert_eq!(signed_area(&rectangle), 6.0);
+        rectangle.reverse();
+        assert_eq!(signed_area(&rectangle), -6.0);
+    }
+
+    #[test]
+    fn convex_intersections_by_hand() {
+        let square = points(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]);
+        let triangle = points(&[(2.0, 2.0), (8.0, 2.0), (2.0, 8.0)]);
+        let far = points(&[(5.0, 0.0), (6.0, 0.0), (6.0, 1.0)]);
+        // The corner [2, 4] x [2, 4] of the square: the line x + y = 10 passes outside it.
+        assert_eq!(signed_area(&convex_intersection(&square, &triangle)), 4.0);
+        assert_eq!(signed_area(&convex_intersection(&triangle, &square)), 4.0);
+        assert!(convex_intersection(&square, &far).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn a_hull_is_convex_and_holds_every_point(coordinates in prop::collection::vec((0u8..12, 0u8..12), 0..40)) {
+            // Small whole numbers: many repeated and collinear points, and exact arithmetic.
+            let cloud: Vec<Point> = coordinates.iter().map(|&(x, y)| Point::new(x.into(), y.into())).collect();
+            let hull = convex_hull(&cloud);
+            prop_assert_eq!(hull.is_empty(), cloud.is_empty());
+            if hull.len() >= 3 {
+                for (place, &corner) in hull.iter().enumerate() {
+                    let next = hull[(place + 1) % hull.len()];
+                    let after = hull[(place + 2) % hull.len()];
+                    prop_assert!(cross(cloud[corner], cloud[next], cloud[after]) > 0.0);
+                    prop_assert!(cloud.iter().all(|&point| cross(cloud[corner], cloud[next], point) >= 0.0));
                 }
             }
-            path.push(enter);
-            path.push(exit);
-            is_up = !is_up;
         }
-        x += pitch;
-    }
-}
-
-/// Where a vertical line meets a convex polygon.
-struct Chord {
-    /// How many edges it meets; those parallel to it do not count.
-    num_ends: usize,
-    low: Point,
-    high: Point,
-}
-
-impl Chord {
-    /// The chord at `x` of the polygon of `corners`. The place on an edge is reckoned as a cut of two segments, the line
-    /// being `height` long: theirs to the last bit, which decides where [`Tolerance::EXACT`] is asked for.
-    fn at(corners: &[Point], x: f64, height: f64, tolerance: Tolerance) -> Self {
-        let mut chord = Self { num_ends: 0, low: Point::default(), high: Point::default() };
-        for (index, &from) in corners.iter().enumerate() {
-            let to = corners[if index + 1 < corners.len() { index + 1 } else { 0 }];
-            let run = to.x - from.x;
-            let (part, whole) = (height * (x - from.x), height * run);
-            let (part, whole) = if run < 0.0 { (-part, -whole) } else { (part, whole) };
-            let margin = height * tolerance.length;
-            if whole > margin && -margin <= part && part <= whole + margin {
-                let share = part.clamp(0.0, whole) / whole;
-                let end = Point::new(from.x + run * share, from.y + (to.y - from.y) * share);
-                if chord.num_ends == 0 || end.y < chord.low.y {
-                    chord.low = end;
-                }
-                if chord.num_ends == 0 || end.y >= chord.high.y {
-                    chord.high = end;
-                }
-                chord.num_ends += 1;
-            }
-        }
-        chord
     }
 }

@@ -7,7 +7,7 @@
 //! 10.1007/s10846-019-01024-y), which the paper reaches through Mukherjee's Optimal Coverage Algorithm. The steps:
 //!
 //! 1. [`cluster`]: k-means; undersized clusters are repaired.
-//! 2. [`convex_hull`] of each cluster.
+//! 2. [`convex_hull_within`] of each cluster.
 //! 3. [`ClosedPolygon::caliper_pairs`]: pairs of hull corners.
 //! 4. [`ClosedPolygon::sweep_of_pair`], [`sweep_path`]: a back-and-forth path for each pair.
 //! 5. [`cheapest_path`]: the cheapest of them, from the depot and back.
@@ -26,10 +26,11 @@
 //!   costs as much as 1.27 % of the square's side; here it costs 1.27 % of the farm's side ([`Turning::of_farm`]). The pitch
 //!   is not given but measured ([`pitch`]); on the paper's farms it is the same.
 
-use crate::geometry::{ClosedPolygon, Frame, Point, Tolerance, convex_hull, cross, dot, extent, sweep_path};
+use crate::geometry::{Point, convex_hull_within, cross, dot, extent};
 use crate::kmeans::kmeans;
 use crate::problem::Problem;
 use crate::random::Random;
+use crate::sweep::{ClosedPolygon, Frame, Tolerance, sweep_path};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Ponds that make a polygon; a cluster with fewer takes ponds of its neighbours (paper, section 3).
@@ -90,16 +91,12 @@ pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
         .filter(|members| !members.is_empty())
         .map(|members| {
             let own: Vec<Point> = members.iter().map(|&pond| ponds[pond]).collect();
-            let corners = convex_hull(&own, tolerance.length);
+            let corners = convex_hull_within(&own, tolerance.length);
             let hull: Vec<Point> = corners.iter().map(|&corner| own[corner]).collect();
             let path = cheapest_path(&hull, depot, pitch, tolerance);
             let order = order_along(&path, &own, pitch, tolerance);
             let global = |indices: Vec<usize>| indices.into_iter().map(|index| members[index]).collect();
-            Cluster {
-                route: global(order),
-                hull: global(corners),
-                path: path.corners.into_iter().map(leave).collect(),
-            }
+            Cluster { route: global(order), hull: global(corners), path: path.corners.into_iter().map(leave).collect() }
         })
         .collect();
     HppPlan { pitch: pitch * unit, clusters }
@@ -173,7 +170,7 @@ fn pond_to_take(
 
 /// Whether the points span no polygon.
 fn is_flat(points: &[Point], tolerance: Tolerance) -> bool {
-    convex_hull(points, tolerance.length).len() < 3
+    convex_hull_within(points, tolerance.length).len() < 3
 }
 
 /// The ponds of each label, in input order.
@@ -205,7 +202,7 @@ fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance
 
 /// The angle between two directions, in [0, π].
 fn turn(from: Point, to: Point) -> f64 {
-    let (sine, cosine) = (cross(from, to).abs(), dot(from, to));
+    let (sine, cosine) = (cross(Point::default(), from, to).abs(), dot(from, to));
     // Nearly all turns of a sweep are right angles.
     if cosine.abs() <= 1e-9 * sine { FRAC_PI_2 } else { sine.atan2(cosine) }
 }
@@ -222,7 +219,7 @@ pub struct SweepPath {
 /// Steps 3 to 5: the cheapest back-and-forth path over a hull, tried for every pair of [`ClosedPolygon::caliper_pairs`]
 /// in both directions.
 ///
-/// `hull` is as [`convex_hull`] gives it. A hull without area is its own path: from end to end.
+/// `hull` is as [`convex_hull_within`] gives it. A hull without area is its own path: from end to end.
 #[must_use]
 pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolerance) -> SweepPath {
     let polygon = ClosedPolygon::new(hull, tolerance);
@@ -269,9 +266,9 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
 #[must_use]
 pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
     let mut order = Vec::with_capacity(ponds.len());
-    let mut remaining: Vec<(usize, Point)> =
-        ponds.iter().map(|&pond| path.frame.enter(pond)).enumerate().collect();
-    let (margin_along, margin_across) = (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
+    let mut remaining: Vec<(usize, Point)> = ponds.iter().map(|&pond| path.frame.enter(pond)).enumerate().collect();
+    let (margin_along, margin_across) =
+        (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
     for leg in path.corners.windows(2) {
         let direction = leg[1] - leg[0];
         if direction.x.abs() <= tolerance.length && direction.y.abs() <= tolerance.length {

@@ -147,8 +147,7 @@ mod tests {
 
     #[test]
     fn two_heaps_are_found() {
-        let points: Vec<Point> =
-            [0.0, 1.0, 2.0, 10.0, 11.0, 12.0].iter().map(|&x| Point::new(x, 0.0)).collect();
+        let points: Vec<Point> = [0.0, 1.0, 2.0, 10.0, 11.0, 12.0].iter().map(|&x| Point::new(x, 0.0)).collect();
         for seed in 0..20 {
             let clustering = kmeans(&points, 2, &mut Random::new(seed));
             let first = clustering.labels[0];
@@ -164,8 +163,12 @@ mod tests {
         let points: Vec<Point> = (0..203).map(|_| Point::new(random.uniform(), random.uniform())).collect();
         let clustering = kmeans(&points, 7, &mut random);
         for (label, centroid) in clustering.centroids.iter().enumerate() {
-            let members: Vec<&Point> =
-                points.iter().zip(&clustering.labels).filter(|(_, own)| **own == label).map(|(point, _)| point).collect();
+            let members: Vec<&Point> = points
+                .iter()
+                .zip(&clustering.labels)
+                .filter(|(_, own)| **own == label)
+                .map(|(point, _)| point)
+                .collect();
             let count = members.len() as f64;
             let mean_x = members.iter().map(|point| point.x).sum::<f64>() / count;
             let mean_y = members.iter().map(|point| point.y).sum::<f64>() / count;

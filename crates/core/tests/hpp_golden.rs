@@ -2,8 +2,9 @@
 //!
 //! The traces lie beside the repository, in `../shared/data`; without them the test says so and passes.
 
-use pondhop_core::geometry::{ClosedPolygon, Point, Tolerance};
+use pondhop_core::geometry::Point;
 use pondhop_core::hpp::{cheapest_path, order_along};
+use pondhop_core::sweep::{ClosedPolygon, Tolerance};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -69,13 +70,16 @@ fn the_authors_pairs_and_orders_are_reproduced() {
         for trace in &traces {
             let farm = &farms[trace.instance];
             let pitch = traced_pitch(trace, farm.spacing * SIDE);
-            let tolerance = if std::env::var("TOL").is_ok() { Tolerance::of_side(SIDE) } else {Tolerance::EXACT };
+            let tolerance = if std::env::var("TOL").is_ok() { Tolerance::of_side(SIDE) } else { Tolerance::EXACT };
             for (index, traced) in trace.clusters.iter().enumerate() {
                 let hull: Vec<Point> = traced.hull.iter().map(|&[x, y]| Point::new(x, y)).collect();
                 let corners = &hull[..hull.len() - 1];
-                let pairs: Vec<[usize; 2]> =
-                    ClosedPolygon::new(corners, tolerance).caliper_pairs().iter().map(|&(i, j)| [i + 1, j + 1]).collect();
-                
+                let pairs: Vec<[usize; 2]> = ClosedPolygon::new(corners, tolerance)
+                    .caliper_pairs()
+                    .iter()
+                    .map(|&(i, j)| [i + 1, j + 1])
+                    .collect();
+
                 let path = cheapest_path(corners, scaled(farm.depot), pitch, tolerance);
                 let members: Vec<usize> = BTreeSet::from_iter(traced.order.iter().copied()).into_iter().collect();
                 let ponds: Vec<Point> = members.iter().map(|&pond| scaled(farm.ponds[pond])).collect();
@@ -85,7 +89,14 @@ fn the_authors_pairs_and_orders_are_reproduced() {
                 num_pairs_equal += usize::from(pairs == traced.pairs);
                 num_orders_equal += usize::from(order == traced.order);
                 if pairs != traced.pairs || order != traced.order {
-                    eprintln!("{name}[{}] cluster {index}: pairs {} order {}\n path {:?}\n   vs {:?}", trace.instance, pairs == traced.pairs, order==traced.order, path.corners.iter().map(|p| [p.x.round(), p.y.round()]).collect::<Vec<_>>(), traced.path.iter().map(|p| [p[0].round(), p[1].round()]).collect::<Vec<_>>());
+                    eprintln!(
+                        "{name}[{}] cluster {index}: pairs {} order {}\n path {:?}\n   vs {:?}",
+                        trace.instance,
+                        pairs == traced.pairs,
+                        order == traced.order,
+                        path.corners.iter().map(|p| [p.x.round(), p.y.round()]).collect::<Vec<_>>(),
+                        traced.path.iter().map(|p| [p[0].round(), p[1].round()]).collect::<Vec<_>>()
+                    );
                 }
             }
         }

@@ -5,8 +5,10 @@
 
 mod error;
 mod evaluate;
+mod generate;
 mod plan;
 mod problem;
+mod separation;
 mod travel;
 
 use pyo3::prelude::*;
@@ -17,9 +19,13 @@ mod _core {
     #[pymodule_export]
     use crate::evaluate::evaluate;
     #[pymodule_export]
+    use crate::generate::generate;
+    #[pymodule_export]
     use crate::plan::Plan;
     #[pymodule_export]
     use crate::problem::Problem;
+    #[pymodule_export]
+    use crate::separation::{Separation, separation};
     #[pymodule_export]
     use crate::travel::LocalFrame;
 
