@@ -24,19 +24,53 @@ impl Point {
     }
 }
 
+impl std::ops::Sub for Point {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y)
+    }
+}
+
+/// Scalar product of two vectors.
+#[must_use]
+pub fn dot(a: Point, b: Point) -> f64 {
+    a.x * b.x + a.y * b.y
+}
+
 /// Twice the signed area of the triangle `a`, `b`, `c`: positive if they turn left (counter-clockwise).
 #[must_use]
 pub fn cross(a: Point, b: Point, c: Point) -> f64 {
     (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 }
 
+/// The longer side of the axis-parallel box around the points; 0 for none.
+#[must_use]
+pub fn extent(points: impl Iterator<Item = Point>) -> f64 {
+    let (mut low, mut high) =
+        (Point::new(f64::INFINITY, f64::INFINITY), Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY));
+    for point in points {
+        low = Point::new(low.x.min(point.x), low.y.min(point.y));
+        high = Point::new(high.x.max(point.x), high.y.max(point.y));
+    }
+    (high.x - low.x).max(high.y - low.y).max(0.0)
+}
+
 /// Indices of the corners of the convex hull of `points`, counter-clockwise from the lowest of the leftmost points.
 ///
 /// Points on an edge and repeated points are no corners: points on one line give its two ends, points in one place give
 /// one index. Of points in one place the first stands for all. Andrew's monotone chain (Andrew, Another efficient
-/// algorithm for convex hulls in two dimensions, Information Processing Letters 1979), O(n log n).
+/// algorithm for convex hulls in two dimensions, Information Processing Letters 1979), O(n log n), and O(n) where the
+/// points come sorted.
 #[must_use]
 pub fn convex_hull(points: &[Point]) -> Vec<usize> {
+    convex_hull_within(points, 0.0)
+}
+
+/// [`convex_hull`] without the corners that rounding makes on a straight edge: a point within `tolerance` of the line
+/// through its neighbours on the hull is no corner, and points within it of each other are in one place.
+#[must_use]
+pub fn convex_hull_within(points: &[Point], tolerance: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // Adding zero makes -0.0 equal to 0.0.
     let key = |index: usize| (points[index].x + 0.0, points[index].y + 0.0);
@@ -44,29 +78,41 @@ pub fn convex_hull(points: &[Point]) -> Vec<usize> {
         let ((ax, ay), (bx, by)) = (key(a), key(b));
         ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(a.cmp(&b))
     });
-    order.dedup_by(|later, earlier| points[*later] == points[*earlier]);
-    if order.len() < 3 {
-        return order;
+    let is_same_place = |one: usize, other: usize| {
+        (points[one].x - points[other].x).abs() <= tolerance && (points[one].y - points[other].y).abs() <= tolerance
+    };
+    order.dedup_by(|later, earlier| is_same_place(*later, *earlier));
+    let mut hull = half_hull(points, order.iter().copied(), tolerance);
+    if order.len() > 1 {
+        hull.pop();
+        hull.extend(half_hull(points, order.iter().rev().copied(), tolerance));
+        hull.pop();
     }
-    let mut hull = half_hull(points, order.iter().copied());
-    hull.pop();
-    hull.extend(half_hull(points, order.iter().rev().copied()));
-    hull.pop();
+    // The corner where the two halves meet was tested against neither.
+    while hull.len() > 2 && is_flat_corner(points, [hull[hull.len() - 2], hull[hull.len() - 1], hull[0]], tolerance) {
+        hull.pop();
+    }
     hull
 }
 
 /// The corners below the line from the first of the sorted points to the last, both included.
-fn half_hull(points: &[Point], sorted: impl Iterator<Item = usize>) -> Vec<usize> {
+fn half_hull(points: &[Point], sorted: impl Iterator<Item = usize>, tolerance: f64) -> Vec<usize> {
     let mut corners: Vec<usize> = Vec::new();
     for index in sorted {
         while let [.., before, last] = corners[..]
-            && cross(points[before], points[last], points[index]) <= 0.0
+            && is_flat_corner(points, [before, last, index], tolerance)
         {
             corners.pop();
         }
         corners.push(index);
     }
     corners
+}
+
+/// Whether the second of three points lies to the left of the line from the first to the third, or within reach of it.
+fn is_flat_corner(points: &[Point], [before, corner, after]: [usize; 3], tolerance: f64) -> bool {
+    let reach = tolerance * ((points[after].x - points[before].x).abs() + (points[after].y - points[before].y).abs());
+    cross(points[before], points[corner], points[after]) <= reach
 }
 
 /// Corners of the intersection of two convex polygons, both given by their corners counter-clockwise; empty if they have no

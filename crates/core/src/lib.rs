@@ -10,7 +10,10 @@
 //! 6. [`travel`]: what a leg costs, and the local metric frame of a farm on the globe.
 //! 7. [`plan`]: the immutable result: routes, schedule, violations.
 //! 8. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
-//! 9. [`separation`]: how well a plan keeps the drones apart.
+//! 9. [`kmeans`]: clusters of nearby points.
+//! 10. [`sweep`]: back-and-forth coverage of a convex polygon.
+//! 11. [`hpp`]: the paper's planner.
+//! 12. [`separation`]: how well a plan keeps the drones apart.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -18,8 +21,11 @@ pub mod error;
 pub mod evaluate;
 pub mod generate;
 pub mod geometry;
+pub mod hpp;
+pub mod kmeans;
 pub mod plan;
 pub mod problem;
 pub mod random;
 pub mod separation;
+pub mod sweep;
 pub mod travel;
