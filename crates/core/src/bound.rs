@@ -19,7 +19,7 @@
 //! for each end, every pair costs no less than the two legs through the pond with the least term. So a star around that
 //! pond stands for all pairs that the graph lacks.
 //!
-//! O(n log n + i (n k + n log n)) for i steps.
+//! O(i n (k + log n + m)) for i steps, the last term in the worst case only: where every exchange cuts off a small part.
 
 use crate::geometry::Point;
 use crate::neighbours::KdTree;
@@ -71,7 +71,7 @@ const FIRST_STEP: f64 = 0.25;
 /// Share of the previous subgradient in a step, which damps oscillation (Volgenant and Jonker 1982 use 0.4).
 const MOMENTUM: f64 = 0.3;
 /// Keeps a bound that equals the optimum from exceeding it by rounding.
-const ROUNDING: f64 = 1.0 - 1e-12;
+const ROUNDING: f64 = 1.0 - 1e-10;
 
 /// The ponds in descending order of their distance from the depot, with the legs between near ones.
 struct SparseGraph {
