@@ -7,6 +7,7 @@ mod bound;
 mod error;
 mod evaluate;
 mod generate;
+mod hpp;
 mod plan;
 mod problem;
 mod separation;
@@ -23,6 +24,8 @@ mod _core {
     use crate::evaluate::evaluate;
     #[pymodule_export]
     use crate::generate::generate;
+    #[pymodule_export]
+    use crate::hpp::{hpp, hpp_clusters};
     #[pymodule_export]
     use crate::plan::Plan;
     #[pymodule_export]
