@@ -27,7 +27,7 @@ pub fn evaluate(problem: &Problem, routes: &[Vec<usize>]) -> Result<Plan, Invali
     Ok(Plan { routes: flown, violations })
 }
 
-fn check_indices(problem: &Problem, routes: &[Vec<usize>]) -> Result<(), InvalidInput> {
+pub(crate) fn check_indices(problem: &Problem, routes: &[Vec<usize>]) -> Result<(), InvalidInput> {
     let mut faults = Faults::default();
     for (route, visits) in routes.iter().enumerate() {
         for (place, &visit) in visits.iter().enumerate() {

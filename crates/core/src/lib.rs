@@ -4,18 +4,34 @@
 //!
 //! 1. [`error`]: what can be wrong with an input, all faults at once.
 //! 2. [`geometry`]: points and planar constructions, each citing its source.
-//! 3. [`problem`]: what is to be planned; validated once, then immutable.
-//! 4. [`travel`]: what a leg costs, and the local metric frame of a farm on the globe.
-//! 5. [`plan`]: the immutable result: routes, schedule, violations.
-//! 6. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
+//! 3. [`neighbours`]: nearest neighbours of points.
+//! 4. [`random`]: seeded random numbers, the same on every machine.
+//! 5. [`generate`]: research farms, as the paper draws them.
+//! 6. [`problem`]: what is to be planned; validated once, then immutable.
+//! 7. [`travel`]: what a leg costs, and the local metric frame of a farm on the globe.
+//! 8. [`plan`]: the immutable result: routes, schedule, violations.
+//! 9. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
+//! 10. [`separation`]: how well a plan keeps the drones apart.
+//! 11. [`bound`]: lower bounds: what no plan can beat.
+//! 12. [`kmeans`]: clusters of nearby points.
+//! 13. [`sweep`]: back-and-forth coverage of a convex polygon.
+//! 14. [`hpp`]: the paper's planner.
+//! 15. [`search`]: the min-max optimiser.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod bound;
 pub mod error;
 pub mod evaluate;
+pub mod generate;
 pub mod geometry;
+pub mod hpp;
+pub mod kmeans;
+pub mod neighbours;
 pub mod plan;
 pub mod problem;
 pub mod random;
 pub mod search;
+pub mod separation;
+pub mod sweep;
 pub mod travel;

@@ -3,10 +3,14 @@
 //! It converts, releases the GIL and maps errors; it holds no algorithm. Its files are named after the core modules they
 //! wrap. Every index is checked at this border, because a Rust panic is no `Exception` in Python.
 
+mod bound;
 mod error;
 mod evaluate;
+mod generate;
+mod hpp;
 mod plan;
 mod problem;
+mod separation;
 mod travel;
 
 use pyo3::prelude::*;
@@ -15,11 +19,19 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use crate::bound::{lower_bound, lower_bound_of_total};
+    #[pymodule_export]
     use crate::evaluate::evaluate;
+    #[pymodule_export]
+    use crate::generate::generate;
+    #[pymodule_export]
+    use crate::hpp::{hpp, hpp_clusters};
     #[pymodule_export]
     use crate::plan::Plan;
     #[pymodule_export]
     use crate::problem::Problem;
+    #[pymodule_export]
+    use crate::separation::{Separation, separation};
     #[pymodule_export]
     use crate::travel::LocalFrame;
 

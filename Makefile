@@ -1,0 +1,64 @@
+# Everything a person or CI does with this repository; `make` alone lists it.
+# Needs Python >= 3.11, a Rust toolchain and a C compiler. All else is installed into .venv, pinned by version.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml)
+export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+export PIP_QUIET := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help build demo test check bench docs pins clean
+.DELETE_ON_ERROR:
+
+help: ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+build: $(VENV)/installed ## Set up .venv: pinned dependencies and a release build of the core
+
+demo: build ## Plan the example farm; plan, picture and missions go to out/demo
+	$(BIN)/pondhop plan examples/delta_farm.geojson --drones 5 -o out/demo
+
+test: build ## Run every test: Rust, Python, the examples and the code blocks of the docs
+	cargo test --workspace --locked
+	$(BIN)/pytest
+
+check: build ## Formatters, linters, types and the rules about layers; warnings are errors
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: build ## Reproduce the HPP row of the paper's Table 1 (about a minute)
+	$(BIN)/python examples/paper_table_1.py --farms 100
+
+docs: build ## Renew the generated pages and pictures of docs/
+	$(BIN)/python -m typer pondhop.cli utils docs --name pondhop --title "pondhop: the command line" --output docs/reference/cli.md
+	$(BIN)/python scripts/docs_pictures.py
+
+pins: ## Take the newest dependencies and pin them in Cargo.pins and constraints.txt
+	cargo update
+	$(PYTHON) scripts/pin_crates.py refresh
+	rm -rf $(VENV)
+	: > constraints.txt
+	$(MAKE) build
+	$(BIN)/pip freeze --exclude pip --exclude setuptools --exclude pondhop > constraints.txt
+
+clean: ## Remove everything that make has made
+	rm -rf $(VENV) target out Cargo.lock python/pondhop/_core*.so .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
+
+Cargo.lock: Cargo.pins Cargo.toml crates/core/Cargo.toml crates/py/Cargo.toml
+	$(PYTHON) scripts/pin_crates.py write
+	@touch $@
+
+$(VENV)/installed: Cargo.lock $(RUST_SOURCES) pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "pondhop needs Python 3.11 or newer; set PYTHON=")'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install maturin
+	$(BIN)/maturin develop --release --locked --quiet --extras plot,dev
+	@touch $@

@@ -1,0 +1,288 @@
+//! Back-and-forth coverage of a convex polygon: in which directions to sweep, and the path of a sweep.
+//!
+//! Problem: cover a convex polygon by parallel lines with little time lost in turns. Source: Vasquez-Gomez,
+//! Marciano-Melchor, Valentin and Herrera-Lozada, Coverage path planning for 2D convex regions, J. Intell. Robot. Syst. 2020
+//! (doi 10.1007/s10846-019-01024-y): the lines of a best path run along an edge of the polygon, which rotating calipers
+//! find (Shamos, Computational Geometry, PhD thesis, Yale 1978).
+//! Complexity: O(h) for all pairs of a polygon of h corners, O(h l) for a path of l lines.
+//! Changed: where the authors' code compares numbers that differ only by rounding, a [`Tolerance`] says what is equal;
+//! [`Tolerance::EXACT`] is their arithmetic to the last bit.
+
+use crate::geometry::Point;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// What counts as equal where a construction asks whether two lengths or two angles are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// In units of the coordinates.
+    pub length: f64,
+    /// In radians.
+    pub angle: f64,
+}
+
+impl Tolerance {
+    /// Nothing but the same number: rounding decides.
+    pub const EXACT: Self = Self { length: 0.0, angle: 0.0 };
+
+    /// 1e-9 of `side`, and 1e-9 rad: far above rounding, far below what a survey can tell.
+    #[must_use]
+    pub fn of_side(side: f64) -> Self {
+        Self { length: 1e-9 * side, angle: 1e-9 }
+    }
+}
+
+/// The direction of a vector in (-π, π], counter-clockwise from east; 0 for the zero vector.
+///
+/// Directions within the tolerance of east and west are exactly 0 and π, on whose side of the axis they may lie.
+fn heading(vector: Point, tolerance: Tolerance) -> f64 {
+    let angle = vector.y.atan2(vector.x);
+    if angle.abs() < tolerance.angle {
+        0.0
+    } else if angle < tolerance.angle - PI {
+        PI
+    } else {
+        angle
+    }
+}
+
+/// The clockwise angle from heading `from` to heading `to` as the authors' code has it: between two headings of the
+/// upper half plane that lie counter-clockwise it is 2π plus, not minus, their difference.
+fn clockwise_angle(from: f64, to: f64) -> f64 {
+    match (from < 0.0, to < 0.0) {
+        (true, true) if from < to => TAU + (from - to),
+        (true, false) => TAU + from - to,
+        (false, false) if from < to => TAU - (from - to),
+        _ => from - to,
+    }
+}
+
+/// A convex polygon as the rows that the paper's planner works on: the corners counter-clockwise, the first repeated at
+/// the end, with the heading of the edge that leaves each row.
+///
+/// The last row's edge leads from the last corner to the first, which are the same: it has no length and heads east.
+#[derive(Clone, Debug)]
+pub struct ClosedPolygon {
+    rows: Vec<Point>,
+    headings: Vec<f64>,
+    tolerance: Tolerance,
+}
+
+impl ClosedPolygon {
+    /// The polygon of at least one corner; `corners` come counter-clockwise and without the repetition of the first.
+    #[must_use]
+    pub fn new(corners: &[Point], tolerance: Tolerance) -> Self {
+        let rows: Vec<Point> = corners.iter().chain(corners.first()).copied().collect();
+        let mut headings: Vec<f64> = rows.windows(2).map(|edge| heading(edge[1] - edge[0], tolerance)).collect();
+        headings.push(0.0);
+        Self { rows, headings, tolerance }
+    }
+
+    fn angle(&self, from: usize, to: usize) -> f64 {
+        clockwise_angle(self.headings[from], self.headings[to])
+    }
+
+    fn previous(&self, row: usize) -> usize {
+        row.checked_sub(1).unwrap_or(self.rows.len() - 1)
+    }
+
+    fn next(&self, row: usize) -> usize {
+        (row + 1) % self.rows.len()
+    }
+
+    /// The pairs of rows for which the paper's planner looks for a sweep direction; at least one.
+    ///
+    /// Rotating calipers (Shamos, Computational Geometry, PhD thesis, Yale 1978) in the form of Vasquez-Gomez et al.,
+    /// O(rows). Quirk kept: that routine is written for an open clockwise polygon and gets a closed counter-clockwise
+    /// one, so that most of the pairs are neighbours and few are antipodal.
+    #[must_use]
+    pub fn caliper_pairs(&self) -> Vec<(usize, usize)> {
+        let num_rows = self.rows.len();
+        let last = num_rows - 1;
+        let (mut i, mut j) = (0, 1);
+        while self.angle(last, j) < PI - self.tolerance.angle {
+            j = self.next(j);
+        }
+        let mut pairs = vec![(i, j)];
+        while j < num_rows {
+            let missing = PI - self.angle(i, j);
+            if missing > self.tolerance.angle {
+                j += 1;
+            } else if missing < -self.tolerance.angle {
+                i += 1;
+            } else {
+                if i + 1 < j {
+                    pairs.push((i + 1, j));
+                }
+                if j < last {
+                    pairs.push((i, j + 1));
+                }
+                i += 1;
+                j += 1;
+            }
+            if j < num_rows && i < j {
+                pairs.push((i, j));
+            }
+        }
+        pairs
+    }
+
+    /// The sweep that the paper's planner tries for a pair of rows: along the edge after one of the two, or along an edge
+    /// before, whichever leaves less width to sweep (Vasquez-Gomez et al.: the best path for an antipodal pair).
+    #[must_use]
+    pub fn sweep_of_pair(&self, (i, j): (usize, usize)) -> Sweep {
+        let (after, opposite) = if self.angle(i, j) - PI < -self.tolerance.angle { (j, i) } else { (i, j) };
+        let phi = self.angle(after, opposite) - PI;
+        let turn = self.angle(self.previous(after), after);
+        let opposite_turn = self.angle(self.previous(opposite), opposite) - phi;
+        let (before, support) = if turn < opposite_turn - self.tolerance.angle {
+            (self.previous(after), opposite)
+        } else {
+            (self.previous(opposite), after)
+        };
+        // The width over an edge of no length is not a number: the comparison is false, and the edge before is taken.
+        let is_narrower = self.width(after, opposite) < self.width(before, support) - self.tolerance.length;
+        Sweep { row: if is_narrower { after } else { before }, starts_up: is_narrower }
+    }
+
+    /// Distance of a row from the line through the edge after another row.
+    fn width(&self, edge: usize, row: usize) -> f64 {
+        let (from, to, point) = (self.rows[edge], self.rows[self.next(edge)], self.rows[row]);
+        let along = to - from;
+        (along.y * point.x - along.x * point.y + to.x * from.y - from.x * to.y).abs()
+            / (along.y * along.y + along.x * along.x).sqrt()
+    }
+
+    /// The frame in which the edge of `sweep` points up.
+    #[must_use]
+    pub fn frame(&self, sweep: Sweep) -> Frame {
+        let along = self.rows[self.next(sweep.row)] - self.rows[sweep.row];
+        // Down the reversed edge is up the edge, but for the edge of no length.
+        let angle = if sweep.starts_up {
+            FRAC_PI_2 - along.y.atan2(along.x)
+        } else {
+            -FRAC_PI_2 - (0.0 - along.y).atan2(0.0 - along.x)
+        };
+        Frame { cosine: angle.cos(), sine: angle.sin() }
+    }
+}
+
+/// A way to sweep a polygon: along which edge, and whether the first line is flown with the edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sweep {
+    /// The row whose outgoing edge the lines are parallel to.
+    pub row: usize,
+    /// Whether the first line is flown in the direction of the edge.
+    pub starts_up: bool,
+}
+
+/// A frame rotated about the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    cosine: f64,
+    sine: f64,
+}
+
+impl Frame {
+    /// The frame that is not rotated.
+    pub const UNTURNED: Self = Self { cosine: 1.0, sine: 0.0 };
+
+    /// The coordinates of `point` in this frame.
+    #[must_use]
+    pub fn enter(self, point: Point) -> Point {
+        Point::new(self.cosine * point.x - self.sine * point.y, self.sine * point.x + self.cosine * point.y)
+    }
+
+    /// The point whose coordinates in this frame are `local`.
+    #[must_use]
+    pub fn leave(self, local: Point) -> Point {
+        Point::new(self.cosine * local.x + self.sine * local.y, self.cosine * local.y - self.sine * local.x)
+    }
+}
+
+/// Most lines of one sweep. A cluster has about as many as the root of its ponds; more would mean that the pitch says
+/// nothing about it (pairs of ponds a step apart, kilometres from each other), and the lines are drawn apart.
+const MAX_NUM_LINES: f64 = 4096.0;
+
+/// Writes the corners of the back-and-forth path over a convex polygon into `path`: two per line, joined by right angles.
+///
+/// `corners` are those of a closed polygon in the frame of the sweep, whose lines are vertical: the first at the left end,
+/// then one every `pitch` while it is less than half a pitch beyond the right end; a line that misses the polygon takes the
+/// chord half a pitch before it. Of two ends that follow each other, the one that lies inside is pulled to the other's
+/// height (Vasquez-Gomez et al.). A side within the tolerance of a line is part of it; with [`Tolerance::EXACT`],
+/// rounding decides whether it is. O(corners lines).
+pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tolerance, path: &mut Vec<Point>) {
+    path.clear();
+    let bound = |value: fn(&Point) -> f64, choose: fn(f64, f64) -> f64| corners.iter().map(value).reduce(choose);
+    let (Some(left), Some(right), Some(bottom), Some(top)) = (
+        bound(|corner| corner.x, f64::min),
+        bound(|corner| corner.x, f64::max),
+        bound(|corner| corner.y, f64::min),
+        bound(|corner| corner.y, f64::max),
+    ) else {
+        return;
+    };
+    let pitch = pitch.max((right - left) / MAX_NUM_LINES);
+    let height = (top + 1.0) - (bottom - 1.0);
+    let mut is_up = starts_up;
+    let mut x = left;
+    while x < right + pitch / 2.0 - tolerance.length {
+        let mut line = Chord::at(corners, x, height, tolerance);
+        if line.num_ends == 0 {
+            line = Chord::at(corners, x - pitch / 2.0, height, tolerance);
+            line.low.x += pitch / 2.0;
+            line.high.x += pitch / 2.0;
+        } else if line.num_ends == 1 {
+            path.push(line.low);
+        }
+        if line.num_ends > 1 {
+            let (mut enter, exit) = if is_up { (line.low, line.high) } else { (line.high, line.low) };
+            if let Some(last) = path.last_mut() {
+                let is_last_inside = if is_up { enter.y < last.y } else { enter.y > last.y };
+                if is_last_inside {
+                    last.y = enter.y;
+                } else {
+                    enter.y = last.y;
+                }
+            }
+            path.push(enter);
+            path.push(exit);
+            is_up = !is_up;
+        }
+        x += pitch;
+    }
+}
+
+/// Where a vertical line meets a convex polygon.
+struct Chord {
+    /// How many edges it meets; those parallel to it do not count.
+    num_ends: usize,
+    low: Point,
+    high: Point,
+}
+
+impl Chord {
+    /// The chord at `x` of the polygon of `corners`. The place on an edge is reckoned as a cut of two segments, the line
+    /// being `height` long: theirs to the last bit, which decides where [`Tolerance::EXACT`] is asked for.
+    fn at(corners: &[Point], x: f64, height: f64, tolerance: Tolerance) -> Self {
+        let mut chord = Self { num_ends: 0, low: Point::default(), high: Point::default() };
+        for (index, &from) in corners.iter().enumerate() {
+            let to = corners[if index + 1 < corners.len() { index + 1 } else { 0 }];
+            let run = to.x - from.x;
+            let (part, whole) = (height * (x - from.x), height * run);
+            let (part, whole) = if run < 0.0 { (-part, -whole) } else { (part, whole) };
+            let margin = height * tolerance.length;
+            if whole > margin && -margin <= part && part <= whole + margin {
+                let share = part.clamp(0.0, whole) / whole;
+                let end = Point::new(from.x + run * share, from.y + (to.y - from.y) * share);
+                if chord.num_ends == 0 || end.y < chord.low.y {
+                    chord.low = end;
+                }
+                if chord.num_ends == 0 || end.y >= chord.high.y {
+                    chord.high = end;
+                }
+                chord.num_ends += 1;
+            }
+        }
+        chord
+    }
+}

@@ -1,0 +1,66 @@
+//! `pondhop_core::separation`.
+
+use crate::error::to_python;
+use crate::problem::Problem;
+use pyo3::prelude::*;
+
+/// How well a plan keeps the drones apart: immutable.
+#[pyclass(frozen, eq, module = "pondhop")]
+#[derive(PartialEq)]
+pub struct Separation {
+    inner: pondhop_core::separation::Separation,
+}
+
+#[pymethods]
+impl Separation {
+    /// Area inside the convex hulls of the ponds of at least two routes, as a share of the area of the hull of all ponds.
+    #[getter]
+    fn overlap(&self) -> f64 {
+        self.inner.overlap
+    }
+
+    /// Pairs of crossing legs of different routes, legs from and to the depot left aside.
+    #[getter]
+    fn num_crossings(&self) -> usize {
+        self.inner.num_crossings
+    }
+
+    /// Pairs of crossing legs of different routes, of which at least one starts or ends at the depot.
+    #[getter]
+    fn num_depot_leg_crossings(&self) -> usize {
+        self.inner.num_depot_leg_crossings
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Separation(overlap={}, num_crossings={}, num_depot_leg_crossings={})",
+            self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings
+        )
+    }
+}
+
+/// Measure how well routes keep apart: shared territory and crossing legs.
+///
+/// Parameters
+/// ----------
+/// problem
+///     What was to be planned.
+/// routes
+///     Pond indices per route in flying order, the depot implied at both ends.
+///
+/// Returns
+/// -------
+/// Separation
+///     Overlap of the convex hulls of the routes' ponds, and numbers of crossings.
+///
+/// Raises
+/// ------
+/// InvalidInput
+///     If a route names a pond that does not exist.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value)]
+pub fn separation(py: Python<'_>, problem: &Problem, routes: Vec<Vec<usize>>) -> PyResult<Separation> {
+    py.detach(|| pondhop_core::separation::separation(&problem.inner, &routes))
+        .map(|inner| Separation { inner })
+        .map_err(|error| to_python(&error))
+}

@@ -1,0 +1,329 @@
+"""The command line: contracts, exit codes, and how bad input and bugs are answered."""
+
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from pondhop import cli, instances, planners
+
+ROOT = Path(__file__).resolve().parent.parent
+FARM = ROOT / "examples" / "delta_farm.geojson"
+PONDHOP = str(Path(sys.executable).parent / "pondhop")
+
+
+class Ran(NamedTuple):
+    code: int
+    out: str
+    err: str
+
+
+Run = Callable[..., Ran]
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
+    """Run a command line in this process."""
+
+    def run_command(*arguments: object) -> Ran:
+        monkeypatch.setattr(sys, "argv", ["pondhop", *map(str, arguments)])
+        with pytest.raises(SystemExit) as exited:
+            cli.main()
+        captured = capfd.readouterr()
+        code = exited.value.code
+        assert isinstance(code, int)
+        return Ran(code, captured.out, captured.err)
+
+    return run_command
+
+
+@pytest.fixture
+def farms(tmp_path: Path) -> Path:
+    path = tmp_path / "farms.json"
+    instances.write_farms(path, instances.generate(30, 3, seed=5))
+    return path
+
+
+def faults(ran: Ran) -> list[dict[str, str]]:
+    assert ran.code == 2
+    document = json.loads(ran.err)
+    assert document["status"] == "invalid_input"
+    return list(document["faults"])
+
+
+def test_solve_writes_one_object_a_farm(run: Run, farms: Path, tmp_path: Path) -> None:
+    plans = tmp_path / "new" / "plans.json"
+    command = ("solve", farms, "--routes", 4, "--planner", "hpp", "--time-limit", 1, "--seed", 2, "--threads", 1)
+    assert run(*command, "-o", plans).code == 0
+    records = json.loads(plans.read_text())
+    assert [record["index"] for record in records] == [0, 1, 2]
+    for record in records:
+        keys = "index planner seed elapsed_s routes route_lengths max_route_length total_length lower_bound"
+        assert list(record) == keys.split()
+        assert (record["planner"], record["seed"]) == ("hpp", 2)
+        assert 0.0 < record["elapsed_s"] < 60.0
+        assert sorted(pond for route in record["routes"] for pond in route) == list(range(30))
+        assert 1 <= len(record["routes"]) <= 4
+        assert record["max_route_length"] == max(record["route_lengths"])
+        assert record["total_length"] == pytest.approx(sum(record["route_lengths"]))
+        assert 0.0 < record["lower_bound"] <= record["max_route_length"]
+
+
+def test_solve_without_output_prints_the_same_json(run: Run, farms: Path, tmp_path: Path) -> None:
+    def plans(text: str) -> list[dict[str, Any]]:
+        return [record | {"elapsed_s": None} for record in json.loads(text)]
+
+    printed = run("solve", farms, "--routes", 4)
+    written = run("solve", farms, "--routes", 4, "--json", "-o", tmp_path / "plans.json")
+    assert printed.code == written.code == 0
+    assert printed.err == written.err == ""
+    assert plans(printed.out) == plans(written.out) == plans((tmp_path / "plans.json").read_text())
+
+
+def test_solve_reads_tsplib(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "four.tsp"
+    path.write_text(
+        "NAME: four\nTYPE: TSP\nDIMENSION: 4\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n"
+        "1 0 0\n2 0 3\n3 4 3\n4 4 0\nEOF\n"
+    )
+    ran = run("solve", path, "--routes", 1)
+    assert ran.code == 0
+    assert json.loads(ran.out)[0]["total_length"] >= 14.0
+
+
+def test_evaluate_judges_any_plans(run: Run, tmp_path: Path) -> None:
+    farm = {"depot": [0, 0], "ponds": [[3, 4], [0, 5], [6, 8]]}
+    (tmp_path / "farms.json").write_text(json.dumps([farm, farm]))
+    (tmp_path / "plans.json").write_text(json.dumps([{"routes": [[0, 2], [1]]}, {"routes": [[0]]}]))
+    command = ("evaluate", tmp_path / "plans.json", "--farms", tmp_path / "farms.json", "--routes", 2)
+    first, second = json.loads(run(*command, "--json").out)
+    assert (first["max_route_length"], first["total_length"], first["is_feasible"]) == (20.0, 30.0, True)
+    assert first["gap_percent"] == pytest.approx(100.0 * (20.0 / first["lower_bound"] - 1.0))
+    assert first["lower_bound"] >= 20.0 - 1e-9
+    assert not second["is_feasible"]
+    assert len(second["violations"]) == 2
+    assert run(*command).code == 0
+    assert run(*command, "--require-feasible").code == 3
+    assert "Violation in farm 1" in run(*command).out
+
+
+@pytest.mark.parametrize(
+    ("plans", "path"),
+    [
+        ("not json", "plans.json"),
+        ("{}", "plans.json"),
+        ('[{"routes": [[0]]}]', "--farms"),
+        ('[{"routes": [[0]]}, {"routes": [[-1]]}, {"routes": [0]}]', "plans.json[1].routes"),
+        ('[{"routes": [[0]]}, {"routes": [["0"]]}, 7]', "plans.json[1].routes"),
+        ('[{"routes": [[0]]}, {"routes": [[30]]}, {"routes": [[0]]}]', "routes"),
+    ],
+)
+def test_broken_plans_are_answered_with_their_place(
+    run: Run, farms: Path, tmp_path: Path, plans: str, path: str
+) -> None:
+    (tmp_path / "plans.json").write_text(plans)
+    found = faults(run("evaluate", tmp_path / "plans.json", "--farms", farms, "--json"))
+    assert path in found[0]["path"]
+
+
+def test_plan_writes_everything_a_crew_needs(run: Run, tmp_path: Path) -> None:
+    ran = run("plan", FARM, "--drones", 3, "--no-figure", "-o", tmp_path / "out")
+    assert ran.code == 0
+    assert ran.err == ""
+    assert "Assumed, not measured" in ran.out
+    assert "No plan has a longest route below" in ran.out
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written == {"plan.json", "plan.geojson", "missions"}
+    missions = {path.name for path in (tmp_path / "out" / "missions").iterdir()}
+    drones = {f"drone-{drone}.{kind}" for drone in (1, 2, 3) for kind in ("plan", "waypoints")}
+    assert missions == drones | {"README.txt"}
+
+
+def test_plan_as_json_is_the_plan_file(run: Run, tmp_path: Path) -> None:
+    ran = run("plan", FARM, "--drones", 3, "--no-figure", "--json", "-o", tmp_path)
+    assert ran.code == 0
+    assert json.loads(ran.out) == json.loads((tmp_path / "plan.json").read_text())
+
+
+def test_a_written_plan_can_be_judged_and_drawn(run: Run, tmp_path: Path) -> None:
+    assert run("plan", FARM, "--drones", 3, "--no-figure", "-o", tmp_path).code == 0
+    assert run("evaluate", tmp_path / "plan.json", "--require-feasible").code == 0
+    drawn = run("plot", tmp_path / "plan.json", "-o", tmp_path / "figure.svg", "--json")
+    assert drawn.code == 0
+    assert Path(json.loads(drawn.out)["figure"]).stat().st_size > 1000
+
+
+def test_research_plans_can_be_drawn(run: Run, farms: Path, tmp_path: Path) -> None:
+    plans = tmp_path / "plans.json"
+    assert run("solve", farms, "--routes", 3, "-o", plans).code == 0
+    assert run("plot", plans, "--farms", farms, "--index", 2, "-o", tmp_path / "figure.png").code == 0
+    assert (tmp_path / "figure.png").exists()
+    assert faults(run("plot", plans, "--farms", farms, "--index", 3, "-o", tmp_path / "figure.png", "--json"))
+    assert faults(run("plot", plans, "--farms", farms, "-o", tmp_path / "figure.bmp", "--json"))
+
+
+def test_an_infeasible_plan_is_a_result(run: Run, tmp_path: Path) -> None:
+    fleet = tmp_path / "fleet.toml"
+    fleet.write_text("num_drones = 3\nmax_route_duration_s = 60.0\n")
+    command = ("plan", FARM, "--fleet", fleet, "--no-figure", "-o", tmp_path / "out")
+    ran = run(*command)
+    assert ran.code == 0
+    assert "Violation" in ran.out
+    assert ran.err.startswith("No mission was written, because this plan cannot be flown\n  1. ")
+    assert run(*command, "--require-feasible").code == 3
+    with_json = run(*command, "--json")
+    assert not json.loads(with_json.out)["summary"]["is_feasible"]
+    assert json.loads(with_json.err)["status"] == "no_missions"
+
+
+def test_nothing_of_an_earlier_plan_stays_to_be_flown(run: Run, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert run("plan", FARM, "--drones", 3, "-o", out).code == 0
+    assert len(list(out.glob("missions/*.plan"))) == 3
+    assert (out / "plan.png").exists()
+    fleet = tmp_path / "fleet.toml"
+    fleet.write_text("num_drones = 3\nmax_route_duration_s = 60.0\n")
+    assert run("plan", FARM, "--fleet", fleet, "--no-figure", "-o", out).code == 0
+    left = {path.suffix for path in out.rglob("*") if path.is_file()}
+    assert not {".plan", ".waypoints", ".png", ".svg"} & left
+
+
+def test_generate_is_seeded(run: Run, tmp_path: Path) -> None:
+    printed = run("generate", "--ponds", 20, "--farms", 2, "--seed", 3)
+    assert run("generate", "--ponds", 20, "--farms", 2, "--seed", 3, "-o", tmp_path / "farms.json").code == 0
+    assert printed.out == (tmp_path / "farms.json").read_text()
+    assert printed.out != run("generate", "--ponds", 20, "--farms", 2, "--seed", 4).out
+
+
+def test_generate_farm_makes_a_farm_that_can_be_planned(run: Run, tmp_path: Path) -> None:
+    farm = tmp_path / "new" / "farm.geojson"
+    ran = run("generate-farm", "--ponds", 25, "--at", "-90.9,33.4", "--missing-share", 0.1, "--irregular", "-o", farm)
+    assert ran.code == 0
+    assert run("plan", farm, "--drones", 2, "--no-figure", "-o", tmp_path / "out").code == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "path", "action"),
+    [
+        (["plan", FARM, "-o", "out", "--json"], "--drones", "--fleet"),
+        (["plan", FARM, "--drones", 2, "--fleet", FARM, "-o", "out", "--json"], "--drones, --fleet", "one of them"),
+        (["plan", FARM, "--drones", 2, "--depot", "33.4,-97.0", "-o", "out", "--json"], "--depot", "-97.0,33.4"),
+        (["plan", FARM, "--drones", 2, "--depot", "here", "-o", "out", "--json"], "--depot", "longitude first"),
+        (["plan", FARM, "--drones", 2, "--planner", "hp", "-o", "out", "--json"], "planner", "'hpp'"),
+        (["generate-farm", "--ponds", 9, "--at", "1,nan", "-o", "farm.geojson", "--json"], "--at", "degrees"),
+    ],
+)
+def test_bad_options_name_the_remedy(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[object], path: str, action: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (fault,) = faults(run(*arguments))
+    assert fault["path"] == path
+    assert action in fault["action"]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_faults_for_people_are_a_numbered_list(run: Run, tmp_path: Path) -> None:
+    broken = tmp_path / "farms.json"
+    broken.write_text('[{"depot": [0, "x"], "ponds": []}]')
+    ran = run("solve", broken, "--routes", 2)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.startswith("pondhop: 2 problems in the input\n  1. [0].depot")
+    assert "  2. [0].ponds" in ran.err
+    assert "Traceback" not in ran.err
+
+
+@pytest.mark.parametrize(
+    "arguments", [["nonsense"], ["solve", "absent.json", "--routes", "5"], ["generate", "--ponds", "0"]]
+)
+def test_wrong_usage_exits_with_2(run: Run, arguments: list[str]) -> None:
+    ran = run(*arguments)
+    assert (ran.code, ran.out) == (2, "")
+    assert "Traceback" not in ran.err
+
+
+def test_an_output_that_cannot_be_written_is_no_bug(run: Run, farms: Path) -> None:
+    (fault,) = faults(run("solve", farms, "--routes", 2, "--json", "-o", farms / "plans.json"))
+    assert str(farms) in fault["path"]
+
+
+def test_a_bug_asks_for_a_report(run: Run, farms: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken_solve(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("by zero")
+
+    monkeypatch.setattr(planners, "solve", broken_solve)
+    ran = run("solve", farms, "--routes", 2)
+    assert (ran.code, ran.out) == (1, "")
+    assert "ZeroDivisionError: by zero" in ran.err
+    assert f"pondhop --debug solve {farms} --routes 2" in ran.err
+    assert "Traceback" not in ran.err
+    monkeypatch.setattr(sys, "argv", ["pondhop", "--debug", "solve", str(farms), "--routes", "2"])
+    with pytest.raises(ZeroDivisionError):
+        cli.main()
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_bar_shows_up_on_a_terminal_when_something_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(cli, "SECONDS_BEFORE_PROGRESS", 0.0)
+    with cli._progress("Planning", total=2) as advance:
+        advance()
+        while "Planning" not in terminal.getvalue():
+            time.sleep(0.01)
+    assert "50%" in terminal.getvalue()
+
+
+def test_no_bar_shows_up_where_nothing_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    with cli._progress("Planning", total=1) as advance:
+        advance()
+    assert terminal.getvalue() == ""
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_ctrl_c_ends_without_a_traceback(tmp_path: Path) -> None:
+    pipe = tmp_path / "farms.json"
+    os.mkfifo(pipe)
+    command = [PONDHOP, "solve", str(pipe), "--routes", "2"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    # Opening for writing returns once the command has opened the other end and waits for farms.
+    with pipe.open("w"):
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate()
+    assert process.returncode == 130
+    assert "Traceback" not in err
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="needs SIGPIPE")
+def test_a_reader_that_leaves_early_is_no_fault() -> None:
+    command = f"'{PONDHOP}' generate --ponds 300 --farms 50 | head -c 1"
+    ran = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert (ran.stdout, ran.stderr) == ("[", "")
+
+
+def test_the_reference_is_what_help_says() -> None:
+    command = [sys.executable, "-m", "typer", "pondhop.cli", "utils", "docs", "--name", "pondhop"]
+    title = ["--title", "pondhop: the command line"]
+    generated = subprocess.run([*command, *title], capture_output=True, text=True, check=True).stdout
+    page = (ROOT / "docs" / "reference" / "cli.md").read_text()
+    assert page.strip() == generated.strip(), "run: make docs"
+
+
+def test_help_names_every_planner(run: Run) -> None:
+    help_text = run("solve", "--help").out
+    assert all(name in help_text for name in planners.PLANNERS)

@@ -1,0 +1,107 @@
+"""Fleet files and the time on station."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pondhop.errors import InvalidInput
+from pondhop.fleet import Fleet, read_fleet
+
+
+def faults_of(path: Path) -> list[tuple[str, str]]:
+    with pytest.raises(InvalidInput) as caught:
+        read_fleet(path)
+    return [(fault.path, fault.action) for fault in caught.value.faults]
+
+
+def test_a_hover_dip_takes_what_was_measured() -> None:
+    assert Fleet(3, dwell_s=5.0).service_s == pytest.approx(14.8)
+
+
+def test_a_splashdown_takes_what_was_measured() -> None:
+    assert Fleet(3, sampling="splashdown", dwell_s=5.0).service_s == pytest.approx(16.4 + 5.0 + 6.7)
+
+
+def test_a_metre_of_height_costs_descent_and_climb() -> None:
+    # 1/1.5 s down and 1/2.5 s up for a hover dip, 1/0.5 s down for a landing.
+    assert Fleet(1, transit_height_m=8.0).service_s - Fleet(1).service_s == pytest.approx(2 / 3 + 0.4)
+    splashdown = Fleet(1, sampling="splashdown")
+    assert replace(splashdown, transit_height_m=8.0).service_s - splashdown.service_s == pytest.approx(2.4)
+
+
+def test_dipping_lower_takes_longer() -> None:
+    assert Fleet(1, dip_height_m=1.0).service_s - Fleet(1).service_s == pytest.approx(2 / 3 + 0.4)
+    splashdown = Fleet(1, sampling="splashdown")
+    assert replace(splashdown, dip_height_m=1.0).service_s == splashdown.service_s
+
+
+def test_a_dip_above_the_transit_height_is_refused() -> None:
+    with pytest.raises(InvalidInput, match="dip_height_m: 7 m is not below"):
+        Fleet(1, dip_height_m=7.0)
+    assert Fleet(1, dip_height_m=7.0, sampling="splashdown").dip_height_m == 7.0
+
+
+@given(st.floats(2.1, 121.9), st.floats(0.0, 600.0), st.sampled_from(["hover-dip", "splashdown"]))
+def test_time_on_station_exceeds_the_dwell(height_m: float, dwell_s: float, sampling: str) -> None:
+    fleet = Fleet(1, transit_height_m=height_m, dwell_s=dwell_s, sampling=sampling)  # type: ignore[arg-type]
+    assert fleet.service_s > dwell_s
+
+
+def test_what_the_file_leaves_out_is_an_assumption(tmp_path: Path) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text('num_drones = 3\nspeed_m_s = 5.0\nsampling = "splashdown"\nmax_route_duration_s = 900\n')
+    fleet = read_fleet(path)
+    assert fleet == Fleet(3, sampling="splashdown", max_route_duration_s=900)
+    assert fleet.assumptions == ("transit_height_m", "leg_stop_s", "dwell_s", "dip_height_m")
+    assert replace(fleet, dwell_s=9.0).assumptions == ("transit_height_m", "leg_stop_s", "dip_height_m")
+
+
+def test_a_fleet_made_directly_assumes_its_defaults() -> None:
+    assert Fleet(3, leg_stop_s=4.0).assumptions == (
+        "speed_m_s",
+        "transit_height_m",
+        "sampling",
+        "dwell_s",
+        "dip_height_m",
+    )
+
+
+def test_every_fault_is_named_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text('sped_m_s = 5\ndwell_s = "long"\ntransit_height_m = 400\nsampling = "bucket"\nleg_stop_s = nan\n')
+    faults = dict(faults_of(path))
+    assert list(faults) == ["sped_m_s", "num_drones", "dwell_s", "transit_height_m", "sampling", "leg_stop_s"]
+    assert faults["sped_m_s"] == "did you mean speed_m_s?"
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "2.5", "true", '"three"', "[1]", "99999999"])
+def test_the_number_of_drones_is_a_sensible_whole_number(tmp_path: Path, value: str) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text(f"num_drones = {value}\n")
+    assert [place for place, _ in faults_of(path)] == ["num_drones"]
+
+
+def test_a_fleet_made_directly_is_checked_too() -> None:
+    with pytest.raises(InvalidInput) as caught:
+        Fleet(0, speed_m_s=-1.0)
+    assert [fault.path for fault in caught.value.faults] == ["num_drones", "speed_m_s"]
+
+
+def test_a_missing_file_and_a_folder_are_faults(tmp_path: Path) -> None:
+    assert len(faults_of(tmp_path)) == 1
+    assert len(faults_of(tmp_path / "absent.toml")) == 1
+
+
+@given(content=st.binary(max_size=200))
+def test_any_bytes_give_a_fleet_or_faults(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
+    path = tmp_path_factory.mktemp("fleets") / "fleet.toml"
+    path.write_bytes(content)
+    num_faults = num_drones = 0
+    try:
+        num_drones = read_fleet(path).num_drones
+    except InvalidInput as error:
+        num_faults = len(error.faults)
+    assert (num_faults > 0) != (num_drones > 0)

@@ -1,0 +1,338 @@
+from __future__ import annotations
+
+import json
+import math
+import re
+import struct
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hand_made import DEPOT, make_farm, make_plan, square, two_drones
+from pondhop import InvalidInput
+from pondhop.errors import Fault
+from pondhop.farm import Farm, Pond
+from pondhop.fleet import Fleet
+from pondhop.missions import write_missions
+from pondhop.missions.mavlink import MAX_NUM_ITEMS, MavlinkItem, from_mavlink, to_mavlink
+from pondhop.missions.mission import Action, Mission, MissionItem, build_mission, check_mission
+from pondhop.missions.qgroundcontrol import parse_qgroundcontrol_plan, qgroundcontrol_plan
+from pondhop.missions.waypoints import parse_waypoints, waypoints
+
+STYLES = [Fleet(num_drones=2), Fleet(num_drones=2, sampling="splashdown", dwell_s=30)]
+
+
+def build(fleet: Fleet, route: list[int], **changes: object) -> Mission:
+    return build_mission("drone-1", make_farm(**changes), fleet, route)
+
+
+def check(mission: Mission) -> list[Fault]:
+    return check_mission(mission, max_num_items=MAX_NUM_ITEMS)
+
+
+def with_item(mission: Mission, index: int, **changes: Any) -> Mission:
+    items = list(mission.items)
+    items[index] = replace(items[index], **changes)
+    return replace(mission, items=tuple(items))
+
+
+def test_hover_dip_lowers_the_probe_at_each_pond() -> None:
+    mission = build(Fleet(num_drones=1, dwell_s=5, dip_height_m=2), [1])
+    pond = (-89.001, 37.001)
+    assert mission.items == (
+        MissionItem(Action.TAKEOFF, DEPOT, 7.0),
+        MissionItem(Action.CHANGE_SPEED, speed_m_s=5.0),
+        MissionItem(Action.WAYPOINT, pond, 7.0),
+        MissionItem(Action.WAYPOINT, pond, 2.0, hold_s=5.0),
+        MissionItem(Action.WAYPOINT, pond, 7.0),
+        MissionItem(Action.RETURN_TO_LAUNCH),
+    )
+    assert check(mission) == []
+
+
+def test_splashdown_lands_waits_and_takes_off_at_each_pond() -> None:
+    mission = build(Fleet(num_drones=1, sampling="splashdown", dwell_s=30), [1])
+    pond = (-89.001, 37.001)
+    assert mission.items[2:] == (
+        MissionItem(Action.WAYPOINT, pond, 7.0),
+        MissionItem(Action.LAND, pond, 0.0),
+        MissionItem(Action.DELAY, hold_s=30.0),
+        MissionItem(Action.TAKEOFF, pond, 7.0),
+        MissionItem(Action.RETURN_TO_LAUNCH),
+    )
+    assert check(mission) == []
+
+
+def test_the_plan_file_is_as_qgroundcontrol_wants_it() -> None:
+    hole = square(-89.005, 37.005, 0.001)
+    mission = build(
+        Fleet(num_drones=1, sampling="splashdown"),
+        [1],
+        fences=((square(*DEPOT, 0.01), hole),),
+        no_fly=((square(-89.005, 36.995, 0.001),),),
+    )
+    plan = json.loads(qgroundcontrol_plan(mission))
+    assert (plan["fileType"], plan["version"], plan["mission"]["version"]) == ("Plan", 1, 2)
+    assert plan["mission"]["firmwareType"] == 3
+    assert plan["mission"]["vehicleType"] == 2
+    assert plan["mission"]["plannedHomePosition"] == [37.0, -89.0, 0.0]
+    items = plan["mission"]["items"]
+    assert [item["doJumpId"] for item in items] == [1, 2, 3, 4, 5, 6, 7]
+    assert [item["command"] for item in items] == [22, 178, 16, 21, 93, 22, 20]
+    assert [item["frame"] for item in items] == [3, 2, 3, 3, 2, 3, 2]
+    assert items[0]["params"] == [0, 0, 0, None, 37.0, -89.0, 7]
+    assert items[1]["params"] == [1, 5, -1, 0, 0, 0, 0]
+    assert items[4]["params"] == [5, -1, -1, -1, 0, 0, 0]
+    polygons = plan["geoFence"]["polygons"]
+    assert [polygon["inclusion"] for polygon in polygons] == [True, False, False]
+    # Latitude first, and the first corner not repeated at the end.
+    assert polygons[0]["polygon"] == [[36.99, -89.01], [36.99, -88.99], [37.01, -88.99], [37.01, -89.01]]
+
+
+def test_the_waypoints_file_has_twelve_columns_and_home_first() -> None:
+    lines = waypoints(build(Fleet(num_drones=1), [1])).split("\n")
+    assert lines[0] == "QGC WPL 110"
+    zeros = "\t".join(["0.00000000"] * 4)
+    assert lines[1] == f"0\t1\t0\t16\t{zeros}\t37.00000000\t-89.00000000\t0.00000000\t1"
+    dip = "5.00000000\t0.00000000\t0.00000000\t0.00000000"
+    assert lines[5] == f"4\t0\t3\t16\t{dip}\t37.00100000\t-89.00100000\t2.00000000\t1"
+    assert lines[-1] == ""
+
+
+@pytest.mark.parametrize("fleet", STYLES, ids=lambda fleet: fleet.sampling)
+def test_every_written_file_reads_back_as_the_mission(tmp_path: Path, fleet: Fleet) -> None:
+    farm = make_farm(no_fly=((square(-89.005, 36.995, 0.001),),))
+    paths = write_missions(tmp_path, make_plan(farm, fleet, [[0, 1, 2], [4, 3]]))
+    assert {path.name for path in paths} == {
+        "drone-1.plan",
+        "drone-1.waypoints",
+        "drone-2.plan",
+        "drone-2.waypoints",
+        "README.txt",
+    }
+    assert set(tmp_path.iterdir()) == set(paths)
+    for name, route in (("drone-1", [0, 1, 2]), ("drone-2", [4, 3])):
+        mission = build_mission(name, farm, fleet, route)
+        assert parse_qgroundcontrol_plan((tmp_path / f"{name}.plan").read_text(), name) == mission
+        read = parse_waypoints((tmp_path / f"{name}.waypoints").read_text(), name)
+        assert read == replace(mission, fences=(), no_fly=())
+
+
+def test_the_readme_tells_the_crew_what_splashdown_needs(tmp_path: Path) -> None:
+    write_missions(tmp_path, make_plan(make_farm(), STYLES[1], [[0, 1, 2], [4, 3]]))
+    text = (tmp_path / "README.txt").read_text()
+    assert "MIS_OPTIONS" in text
+    assert "drone-2: 2 ponds" in text
+
+
+def test_missions_of_an_earlier_plan_are_removed(tmp_path: Path) -> None:
+    write_missions(tmp_path, two_drones())
+    (tmp_path / "drone-2.plan.bak").write_text("the user's own")
+    write_missions(tmp_path, make_plan(make_farm(), Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "README.txt",
+        "drone-1.plan",
+        "drone-1.waypoints",
+        "drone-2.plan.bak",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("index", "changes", "message"),
+    [
+        (2, {"position": (-89.0, 137.0)}, "latitude is 137"),
+        (2, {"position": (math.nan, 37.0)}, "longitude is nan"),
+        (2, {"position": None}, "no position"),
+        (2, {"height_m": 122.0}, "height is 122.0 m"),
+        (2, {"height_m": math.inf}, "height is inf"),
+        (2, {"height_m": 0.0}, "height is 0 m"),
+        (4, {"hold_s": 2.5}, "hold is 2.5 s"),
+        (4, {"hold_s": math.nan}, "hold is nan s"),
+        (4, {"hold_s": 65_536.0}, "hold is 65536.0 s"),
+        (4, {"hold_s": 0.0}, "delay is 0 s"),
+        (4, {"action": Action.RETURN_TO_LAUNCH}, "items follow the return"),
+        (5, {"action": Action.WAYPOINT}, "does not take off again"),
+        (1, {"speed_m_s": 0.0}, "speed is 0.0"),
+        (0, {"action": Action.WAYPOINT}, "does not begin with TAKEOFF"),
+        (6, {"action": Action.WAYPOINT, "position": DEPOT, "height_m": 7.0}, "ends with neither"),
+    ],
+)
+def test_each_rule_is_checked(index: int, changes: dict[str, Any], message: str) -> None:
+    mission = build(Fleet(num_drones=1, sampling="splashdown"), [1])
+    assert check(mission) == []
+    faults = check(with_item(mission, index, **changes))
+    assert any(message in fault.message for fault in faults), faults
+    assert all(fault.path.startswith("drone-1") and fault.action for fault in faults)
+
+
+def test_legs_stay_inside_every_fence_and_outside_no_fly_zones() -> None:
+    # The zone lies between the depot and pond P0, the small fence leaves P4 out.
+    mission = build(
+        Fleet(num_drones=1),
+        [0, 3, 4],
+        fences=((square(*DEPOT, 0.01),), (square(-89.0, 37.0, 0.0015),)),
+        no_fly=((square(-89.001, 37.0005, 0.0001),),),
+    )
+    assert [(fault.path, fault.message) for fault in check(mission)] == [
+        ("drone-1, leg from home to pond P0", "it is not inside fence 2"),
+        ("drone-1, leg from pond P0 to pond P3", "it is not inside fence 2"),
+        ("drone-1, leg from pond P3 to pond P4", "it is not inside fence 2"),
+        ("drone-1, leg from pond P4 to home", "it is not inside fence 2"),
+        ("drone-1, leg from home to pond P0", "it is not outside no-fly zone 1"),
+    ]
+
+
+def test_a_fence_that_crosses_itself_is_refused() -> None:
+    bow_tie = ((-89.01, 36.99), (-88.99, 37.01), (-88.99, 36.99), (-89.01, 37.01), (-89.01, 36.99))
+    assert [fault.message for fault in check(build(Fleet(1), [0], fences=((bow_tie,),)))] == ["it is no simple polygon"]
+
+
+def test_too_many_items_are_refused_for_every_drone(tmp_path: Path) -> None:
+    ponds = tuple(Pond(str(number), (-89.0 + 1e-5 * number, 37.001)) for number in range(500))
+    farm = Farm("large", ponds, DEPOT)
+    fleet = Fleet(num_drones=2, sampling="splashdown")
+    folder = tmp_path / "missions"
+    with pytest.raises(InvalidInput) as error:
+        write_missions(folder, make_plan(farm, fleet, [list(range(162)), list(range(162, 500))]))
+    assert [(fault.path, fault.message) for fault in error.value.faults] == [
+        ("drone-1", "it has 652 items with home, the autopilot stores 650"),
+        ("drone-2", "it has 1356 items with home, the autopilot stores 650"),
+    ]
+    assert "more drones" in error.value.faults[0].action
+    assert not folder.exists()
+    # One pond less fits: 3 items, 4 a pond, and home.
+    assert check(build_mission("drone-1", farm, fleet, list(range(161)))) == []
+
+
+def test_all_faults_of_all_missions_are_told_and_nothing_is_written(tmp_path: Path) -> None:
+    fleet = Fleet(num_drones=2, dwell_s=2.5, max_route_length_m=300, max_route_duration_s=60)
+    with pytest.raises(InvalidInput) as error:
+        write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]]))
+    text = str(error.value)
+    for message in ("hold is 2.5 s", "max_route_length_m is 300", "max_route_duration_s is 60"):
+        assert message in text
+    assert {fault.path.split(",")[0] for fault in error.value.faults} == {"drone-1", "drone-2"}
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_plan_without_routes_has_no_mission(tmp_path: Path) -> None:
+    with pytest.raises(InvalidInput, match="no route"):
+        write_missions(tmp_path, make_plan(make_farm(), Fleet(1), []))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"version": 1,\n "groundStation"', '"version": 3,\n "groundStation"', "1 was expected"),
+        ('"doJumpId": 2', '"doJumpId": 7', "number items from 1: 2"),
+        ('"command": 20', '"command": 21', "frame 2"),
+        ('"frame": 2', '"frame": 3', "frame 3"),
+        ('"command": 20', '"command": 19', "command 19"),
+        ("7.0\n", "NaN\n", "NaN"),
+        ("7.0\n", "1e999\n", "1e999"),
+        ('"circles": []', '"circles": [1]', "circles"),
+        ("{", "", "not JSON"),
+    ],
+)
+def test_a_changed_plan_file_is_refused(old: str, new: str, message: str) -> None:
+    text = qgroundcontrol_plan(build(Fleet(1), [1]))
+    assert old in text
+    with pytest.raises(InvalidInput, match=re.escape(message)):
+        parse_qgroundcontrol_plan(text.replace(old, new, 1), "drone-1")
+
+
+def test_a_latitude_of_137_degrees_in_a_plan_file_is_found() -> None:
+    text = qgroundcontrol_plan(build(Fleet(1), [1])).replace("37.001", "137.0", 1)
+    assert [fault.message for fault in check(parse_qgroundcontrol_plan(text, "drone-1"))] == ["the latitude is 137.0"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("QGC WPL 110", "QGC WPL 120", "line 1"),
+        ("\t", " ", "line 2: it has 11 columns"),
+        ("3\t0\t3\t16", "9\t0\t3\t16", "line 5: sequence"),
+        ("0\t1\t0\t16", "0\t1\t3\t16", "line 2: it has frame 3"),
+        ("37.00100000", "nan", "line 5: nan is no finite number"),
+        ("37.00100000", "north", "line 5: could not convert"),
+        ("\t178\t", "\t179\t", "command 179"),
+    ],
+)
+def test_a_changed_waypoints_file_is_refused(old: str, new: str, message: str) -> None:
+    text = waypoints(build(Fleet(1), [1]))
+    assert old in text
+    with pytest.raises(InvalidInput, match=message):
+        parse_waypoints(text.replace(old, new, 1), "drone-1")
+
+
+def test_an_empty_waypoints_file_is_refused() -> None:
+    with pytest.raises(InvalidInput, match="line 1"):
+        parse_waypoints("", "drone-1")
+
+
+def test_nothing_but_yaw_is_ever_unset() -> None:
+    for fleet in STYLES:
+        for item in map(to_mavlink, build(fleet, [0, 1]).items):
+            unset = [number for number, param in enumerate(item.params, start=1) if param is None]
+            assert unset in ([], [4])
+            assert unset == [] or item.command in (16, 21, 22)
+
+
+def test_an_unset_hold_is_refused() -> None:
+    item = MavlinkItem(16, 3, (None, 0.0, 0.0, None, 37.0, -89.0, 7.0))
+    with pytest.raises(ValueError, match="none that pondhop writes"):
+        from_mavlink(item)
+
+
+@pytest.fixture(scope="module")
+def mavsdk_mission_raw() -> Iterator[Any]:
+    """MAVSDK's importer; it parses only for a system it has seen, so it is handed a heartbeat. No network is used."""
+    mavsdk = pytest.importorskip("mavsdk", reason="mavsdk is not installed: only our own parsers read the missions")
+    mission_raw = pytest.importorskip("mavsdk.plugins.mission_raw.mission_raw", reason="mavsdk is older than 4")
+    configuration = mavsdk.Configuration.create_with_component_type(mavsdk.ComponentType.GROUND_STATION)
+    with mavsdk.Mavsdk(configuration) as station:
+        station.add_any_connection("raw://")
+        station.pass_received_raw_bytes(heartbeat())
+        system = station.first_autopilot(10.0)
+        assert system is not None
+        yield mission_raw.MissionRaw(system)
+
+
+def heartbeat() -> bytes:
+    """A MAVLink 1 HEARTBEAT of a quadcopter that runs ArduPilot."""
+    payload = struct.pack("<IBBBBB", 0, 2, 3, 81, 4, 3)
+    body = bytes([len(payload), 0, 1, 1, 0]) + payload
+    checksum = 0xFFFF
+    for byte in body + bytes([50]):
+        step = (byte ^ checksum) & 0xFF
+        step = (step ^ (step << 4)) & 0xFF
+        checksum = ((checksum >> 8) ^ (step << 8) ^ (step << 3) ^ (step >> 4)) & 0xFFFF
+    return b"\xfe" + body + struct.pack("<H", checksum)
+
+
+@pytest.mark.parametrize("fleet", STYLES, ids=lambda fleet: fleet.sampling)
+def test_mavsdk_imports_every_written_file(tmp_path: Path, mavsdk_mission_raw: Any, fleet: Fleet) -> None:
+    farm = make_farm(no_fly=((square(-89.005, 36.995, 0.001),),))
+    write_missions(tmp_path, make_plan(farm, fleet, [[0, 1, 2], [4, 3]]))
+    for name, route in (("drone-1", [0, 1, 2]), ("drone-2", [4, 3])):
+        expected = [to_mavlink(item) for item in build_mission(name, farm, fleet, route).items]
+        from_plan = mavsdk_mission_raw.import_qgroundcontrol_mission(str(tmp_path / f"{name}.plan"))
+        assert len(from_plan.mission_items) == len(expected) + 1  # MAVSDK puts home first
+        assert len(from_plan.geofence_items) == 8
+        from_text = mavsdk_mission_raw.import_mission_planner_mission(str(tmp_path / f"{name}.waypoints"))
+        for imported in (from_plan.mission_items, from_text.mission_items):
+            assert (imported[0].command, imported[0].x, imported[0].y) == (16, 370_000_000, -890_000_000)
+            for found, item in zip(imported[-len(expected) :], expected, strict=True):
+                assert_same(found, item)
+
+
+def assert_same(found: Any, expected: MavlinkItem) -> None:
+    assert (found.command, found.frame, found.autocontinue) == (expected.command, expected.frame, 1)
+    latitude, longitude, height = (param or 0.0 for param in expected.params[4:])
+    assert (found.x, found.y) == (round(latitude * 1e7), round(longitude * 1e7))
+    assert found.z == height
+    for param, value in zip((found.param1, found.param2, found.param3, found.param4), expected.params, strict=False):
+        assert param == value or (value is None and (math.isnan(param) or param == 0))

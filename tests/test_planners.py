@@ -1,0 +1,69 @@
+"""The family of planners: by name, one's own, and what is said about wrong ones."""
+
+import numpy as np
+import pytest
+
+import pondhop
+from pondhop import InvalidInput, Problem
+from pondhop.planners import PLANNERS
+
+
+@pytest.fixture
+def problem() -> Problem:
+    """Two ponds north and one east of the depot, two drones."""
+    return Problem((0.0, 0.0), np.array([[0.0, 3.0], [0.0, 6.0], [5.0, 0.0]]), 2)
+
+
+def test_planners_are_registered_under_their_names() -> None:
+    assert "hpp" in PLANNERS
+    assert all(planner.name == name and planner.description for name, planner in PLANNERS.items())
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
+def test_every_planner_serves_every_pond_and_repeats_itself(planner: str) -> None:
+    for farm in pondhop.generate(40, 3, seed=11):
+        solution = pondhop.solve(farm.to_problem(5), planner=planner, seed=3)
+        assert solution.plan.is_feasible
+        assert solution.planner == planner
+        assert solution.seed == 3
+        assert 0.0 < solution.lower_bound <= solution.plan.max_route_length
+        assert solution.plan.routes == pondhop.solve(farm.to_problem(5), planner=planner, seed=3).plan.routes
+
+
+def test_a_planner_of_ones_own(problem: Problem) -> None:
+    seen = []
+
+    def by_hand(task: Problem, seed: int, time_limit_s: float | None) -> list[list[int]]:
+        seen.append((task, seed, time_limit_s))
+        return [[0, 1], [2]]
+
+    solution = pondhop.solve(problem, planner=by_hand, seed=9, time_limit_s=2.5)
+    assert seen == [(problem, 9, 2.5)]
+    assert solution.planner == "by_hand"
+    assert solution.plan.route_lengths.tolist() == [12.0, 10.0]
+    assert solution.elapsed_s >= 0.0
+    assert solution.lower_bound == pytest.approx(12.0)
+
+
+def test_a_wrong_plan_is_a_result_with_violations(problem: Problem) -> None:
+    solution = pondhop.solve(problem, planner=lambda *_: [[0], [0], [1]])
+    assert not solution.plan.is_feasible
+    assert solution.plan.unserved == [2]
+
+
+def test_an_unknown_pond_is_invalid(problem: Problem) -> None:
+    with pytest.raises(InvalidInput):
+        pondhop.solve(problem, planner=lambda *_: [[3]])
+
+
+def test_every_wrong_option_is_named_at_once(problem: Problem) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        pondhop.solve(problem, planner="hpq", seed=-1, time_limit_s=0.0, threads=0)
+    assert [fault.path for fault in caught.value.faults] == ["seed", "time_limit_s", "threads", "planner"]
+    assert caught.value.faults[-1].action == "did you mean 'hpp'?"
+
+
+def test_a_name_like_no_other_lists_the_planners(problem: Problem) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        pondhop.solve(problem, planner="simulated annealing")
+    assert "hpp" in caught.value.faults[0].action
