@@ -38,7 +38,7 @@ pub(super) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [
     let queue: Vec<u32> = order.iter().rev().copied().filter(|&node| (node as usize) < network.num_visits).collect();
     let is_queued = vec![true; network.points.len()];
     let mut ring = Ring { network, order, position, queue, is_queued };
-    let mut num_looked_at = 0;
+    let mut num_looked_at = 0usize;
     while let Some(visit) = ring.queue.pop() {
         ring.is_queued[visit as usize] = false;
         while ring.two_opt(visit) || ring.or_opt(visit) {}
