@@ -17,6 +17,7 @@
 //! 13. [`sweep`]: back-and-forth coverage of a convex polygon.
 //! 14. [`hpp`]: the paper's planner.
 //! 15. [`search`]: the min-max optimiser.
+//! 16. [`territory`]: balanced routes in territories that do not overlap.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -34,4 +35,5 @@ pub mod random;
 pub mod search;
 pub mod separation;
 pub mod sweep;
+pub mod territory;
 pub mod travel;

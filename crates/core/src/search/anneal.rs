@@ -5,6 +5,7 @@
 //! allowance is drawn before the step, so that a step which cannot pass ends early; a step that fails is taken back by
 //! copying what it touched, so that its cost does not depend on the size of the plan.
 
+use super::airspace::Airspace;
 use super::budget::{Budget, Progress};
 use super::network::Network;
 use super::recreate::{Objective, Recreate};
@@ -23,7 +24,7 @@ const STEPS_PER_REPORT: u64 = 2048;
 
 /// A temperature that falls geometrically between two shares of the effort.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Schedule {
+pub(crate) struct Schedule {
     pub begin: f64,
     pub end: f64,
     /// Temperature at the beginning, in units of cost.
@@ -40,7 +41,7 @@ impl Schedule {
 }
 
 /// One annealing chain.
-pub(super) struct Chain {
+pub(crate) struct Chain<A> {
     /// The cheapest plan found.
     pub best: State,
     /// Its cost.
@@ -55,13 +56,14 @@ pub(super) struct Chain {
     trial: State,
     ruin: Ruin,
     recreate: Recreate,
+    airspace: A,
     touched: Touched,
     /// What differs between `current` and `best`.
     since_best: Touched,
 }
 
-impl Chain {
-    pub fn new(state: State, objective: Objective, seed: u64) -> Self {
+impl<A: Airspace> Chain<A> {
+    pub fn new(state: State, objective: Objective, seed: u64, airspace: A) -> Self {
         let mut random = Random::new(seed);
         let recreate = Recreate::new(&mut random);
         let value = objective.value(&state);
@@ -76,6 +78,7 @@ impl Chain {
             trial: state,
             ruin: Ruin::default(),
             recreate,
+            airspace,
             touched: Touched::default(),
             since_best: Touched::default(),
         }
@@ -86,6 +89,7 @@ impl Chain {
         self.current.copy_touched(&self.best, &self.since_best);
         self.trial.copy_touched(&self.best, &self.since_best);
         self.since_best.clear();
+        self.airspace.load(&self.best);
         self.objective = objective;
         self.best_value = objective.value(&self.best);
         self.current_value = self.best_value;
@@ -128,6 +132,7 @@ impl Chain {
             &self.ruin,
             &self.objective,
             threshold,
+            &mut self.airspace,
             &mut self.random,
             &mut self.touched,
         );
@@ -136,6 +141,7 @@ impl Chain {
             self.accept(network, value);
         } else {
             self.trial.copy_touched(&self.current, &self.touched);
+            self.airspace.undo();
         }
         self.touched.clear();
     }
@@ -143,6 +149,7 @@ impl Chain {
     fn accept(&mut self, network: &Network, value: f64) {
         self.current.copy_touched(&self.trial, &self.touched);
         self.current_value = value;
+        self.airspace.keep();
         self.since_best.append(&self.touched);
         if value < self.best_value {
             self.best_value = value;

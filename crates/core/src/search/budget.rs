@@ -21,7 +21,7 @@ pub type Clock<'a> = &'a (dyn Fn() -> f64 + Sync);
 pub type Watch<'a> = &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync);
 
 /// The effort of one search, shared by its threads.
-pub(super) struct Budget<'a> {
+pub(crate) struct Budget<'a> {
     max_iterations: Option<u64>,
     clock: Option<Clock<'a>>,
     watch: Option<Watch<'a>>,

@@ -54,32 +54,32 @@ impl<'a> Sweep<'a> {
             let mut route: Vec<u32> =
                 (range[0]..range[1]).map(|place| self.visits[(start + place) % self.visits.len()]).collect();
             route.sort_unstable_by_key(|&visit| (self.curve_keys[visit as usize], visit));
-            self.open_at_best_leg(&mut route);
+            open_at_best_leg(self.network, &mut route);
             route
         };
         ends.windows(2).map(tour).collect()
-    }
-
-    /// Rotates a closed tour of visits so that going through the depot between its last and first visit costs least.
-    fn open_at_best_leg(&self, route: &mut [u32]) {
-        let (mut best, mut best_detour) = (0, f64::INFINITY);
-        for place in 0..route.len() {
-            let (from, to) = (route[if place == 0 { route.len() - 1 } else { place - 1 }], route[place]);
-            let depot_legs = self.network.depot_legs[from as usize] + self.network.depot_legs[to as usize];
-            let detour = depot_legs - self.network.leg(from, to);
-            if detour < best_detour {
-                (best, best_detour) = (place, detour);
-            }
-        }
-        route.rotate_left(best);
     }
 }
 
 /// Rounds of balancing; a second gained nothing that the search did not gain faster.
 const NUM_BALANCINGS: usize = 1;
 
+/// Rotates a closed tour of visits so that going through the depot between its last and first visit costs least.
+pub(crate) fn open_at_best_leg(network: &Network, route: &mut [u32]) {
+    let (mut best, mut best_detour) = (0, f64::INFINITY);
+    for place in 0..route.len() {
+        let (from, to) = (route[if place == 0 { route.len() - 1 } else { place - 1 }], route[place]);
+        let depot_legs = network.depot_legs[from as usize] + network.depot_legs[to as usize];
+        let detour = depot_legs - network.leg(from, to);
+        if detour < best_detour {
+            (best, best_detour) = (place, detour);
+        }
+    }
+    route.rotate_left(best);
+}
+
 /// Improves each route on its own by 2-opt and Or-opt, and stops between two moves when the time is over.
-pub(super) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
+pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
     for (route, visits) in routes.iter_mut().enumerate() {
         let depot = (network.num_visits + route) as u32;
         visits.push(depot);
@@ -110,7 +110,7 @@ fn balanced_ends(ends: &[usize], costs: &[f64]) -> Vec<usize> {
 }
 
 /// Grows with the angle of `(x, y)` from 0 to 4, without trigonometry: the same on every machine.
-fn pseudo_angle(x: f64, y: f64) -> f64 {
+pub(crate) fn pseudo_angle(x: f64, y: f64) -> f64 {
     let norm = x.abs() + y.abs();
     if norm == 0.0 {
         return 0.0;
@@ -119,7 +119,7 @@ fn pseudo_angle(x: f64, y: f64) -> f64 {
     if y >= 0.0 { 1.0 - ratio } else { 3.0 + ratio }
 }
 
-fn place_after_widest_gap(keyed: &[(f64, u32)]) -> usize {
+pub(crate) fn place_after_widest_gap(keyed: &[(f64, u32)]) -> usize {
     let last = keyed.len() - 1;
     let (mut place, mut widest) = (0, keyed[0].0 + 4.0 - keyed[last].0);
     for (index, pair) in keyed.windows(2).enumerate() {
@@ -131,7 +131,7 @@ fn place_after_widest_gap(keyed: &[(f64, u32)]) -> usize {
 }
 
 /// Place of each point along a Hilbert curve over the bounding square.
-fn curve_keys(points: &[Point]) -> Vec<u32> {
+pub(crate) fn curve_keys(points: &[Point]) -> Vec<u32> {
     let (mut low, mut high) = (points[0], points[0]);
     for point in points {
         low = Point::new(low.x.min(point.x), low.y.min(point.y));

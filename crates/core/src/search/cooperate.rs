@@ -3,6 +3,7 @@
 //! Threads wait for each other at fixed shares of the effort, so that with an iteration limit the outcome depends on the number
 //! of threads, but not on their speed.
 
+use super::airspace::Airspace;
 use super::anneal::Chain;
 use super::state::State;
 use std::sync::{Barrier, Mutex, PoisonError};
@@ -20,7 +21,7 @@ impl Meeting {
     }
 
     /// Every thread that brought a worse plan goes on from the best one; the first of equals wins.
-    pub fn share_best(&self, thread: usize, chain: &mut Chain) {
+    pub fn share_best(&self, thread: usize, chain: &mut Chain<impl Airspace>) {
         let lock = || self.plans.lock().unwrap_or_else(PoisonError::into_inner);
         if lock().len() == 1 {
             return;

@@ -27,7 +27,7 @@ struct Ring<'a> {
 
 /// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
 /// it or the time is over.
-pub(super) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [u32]) {
+pub(crate) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [u32]) {
     if order.len() < 5 {
         return;
     }

@@ -11,6 +11,7 @@
 //! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes ([`state`]); memory
 //! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
 
+mod airspace;
 mod anneal;
 mod budget;
 mod construct;
@@ -22,14 +23,17 @@ mod ruin;
 mod state;
 
 use crate::problem::Problem;
-use anneal::{Chain, Schedule};
-use budget::Budget;
+pub(crate) use airspace::Airspace;
+use airspace::SharedAirspace;
+pub(crate) use anneal::{Chain, Schedule};
+pub(crate) use budget::Budget;
 pub use budget::{Clock, Progress, Watch};
-use construct::{Sweep, improve_routes};
+use construct::Sweep;
+pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap, pseudo_angle};
 use cooperate::Meeting;
-use network::Network;
-use recreate::Objective;
-use state::State;
+pub(crate) use network::Network;
+pub(crate) use recreate::Objective;
+pub(crate) use state::State;
 
 /// What the search minimises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,7 +127,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     }
     network.find_neighbours();
     let search = Search { network: &network, budget: &budget, options, meeting: Meeting::new(options.num_threads) };
-    let mut chains: Vec<Chain> = std::thread::scope(|scope| {
+    let mut chains: Vec<Chain<SharedAirspace>> = std::thread::scope(|scope| {
         let others: Vec<_> = (1..options.num_threads)
             .map(|thread| {
                 scope.spawn({
@@ -152,7 +156,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// One thread's search: race, longest route, total.
-    fn run(&self, thread: usize) -> Chain {
+    fn run(&self, thread: usize) -> Chain<SharedAirspace> {
         let mut chain = match self.options.start {
             Some(routes) => self.chain_from(&to_nodes(routes), thread as u64),
             None => self.race(thread),
@@ -171,7 +175,7 @@ impl Search<'_> {
     }
 
     /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until one is left.
-    fn race(&self, thread: usize) -> Chain {
+    fn race(&self, thread: usize) -> Chain<SharedAirspace> {
         let sweep = Sweep::new(self.network);
         let start = |rotation: f64, stream: u64| {
             let mut routes = sweep.sectors(rotation);
@@ -212,7 +216,7 @@ impl Search<'_> {
         winner
     }
 
-    fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain {
+    fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain<SharedAirspace> {
         let state = State::new(self.network, routes);
         let objective = Objective {
             max_weight: 1.0,
@@ -220,7 +224,7 @@ impl Search<'_> {
             cap: f64::INFINITY,
             target: state.max_route_cost(),
         };
-        Chain::new(state, objective, self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP)))
+        Chain::new(state, objective, self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP)), SharedAirspace)
     }
 
     /// Only the total counts, while no route may outgrow the longest one, and the slack it is given.
@@ -234,7 +238,7 @@ impl Search<'_> {
     }
 
     /// From now to `end`.
-    fn schedule(&self, chain: &Chain, end: f64, (hot, cold): (f64, f64)) -> Schedule {
+    fn schedule(&self, chain: &Chain<SharedAirspace>, end: f64, (hot, cold): (f64, f64)) -> Schedule {
         let scale = chain.best.max_route_cost();
         Schedule { begin: self.budget.share(chain.num_iterations), end, hot: hot * scale, cold: cold * scale }
     }
@@ -247,7 +251,7 @@ fn to_nodes(routes: &[Vec<usize>]) -> Vec<Vec<u32>> {
     routes.iter().map(|route| route.iter().map(|&visit| visit as u32).collect()).collect()
 }
 
-fn to_indices(routes: Vec<Vec<u32>>) -> Vec<Vec<usize>> {
+pub(crate) fn to_indices(routes: Vec<Vec<u32>>) -> Vec<Vec<usize>> {
     let to_index = |route: Vec<u32>| route.into_iter().map(|visit| visit as usize).collect::<Vec<usize>>();
     routes.into_iter().filter(|route| !route.is_empty()).map(to_index).collect()
 }

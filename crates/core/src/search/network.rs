@@ -9,11 +9,11 @@ use crate::problem::Problem;
 
 /// Nearest neighbours kept per visit. The 8 lattice neighbours and most of the next ring; 24 did not shorten plans, and
 /// slowed the steps by a quarter.
-pub(super) const NUM_NEIGHBOURS: usize = 16;
+pub(crate) const NUM_NEIGHBOURS: usize = 16;
 
 /// A nearest neighbour of a visit.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Neighbour {
+pub(crate) struct Neighbour {
     /// Cost of the leg to it.
     pub leg: f64,
     /// Its node index.
@@ -22,7 +22,7 @@ pub(super) struct Neighbour {
 
 /// Visits `0..num_visits`, then one copy of the depot per route: `num_visits + route`.
 #[derive(Debug)]
-pub(super) struct Network {
+pub(crate) struct Network {
     pub num_visits: usize,
     pub num_routes: usize,
     /// Positions of all nodes.

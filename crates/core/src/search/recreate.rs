@@ -4,6 +4,7 @@
 //! what an insertion would push a route over the best known maximum is charged tenfold, a step ends as soon as it is sure to
 //! be rejected, and only places beside near neighbours and at the depot are tried. O(neighbours) for a visit.
 
+use super::airspace::Airspace;
 use super::network::Network;
 use super::ruin::Ruin;
 use super::state::{ABSENT, State, Touched};
@@ -16,7 +17,7 @@ const OVERFLOW_PRICE: f64 = 10.0;
 
 /// What a plan costs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Objective {
+pub(crate) struct Objective {
     /// Weight of the longest route.
     pub max_weight: f64,
     /// Weight of the total.
@@ -62,6 +63,7 @@ impl Recreate {
         ruin: &Ruin,
         objective: &Objective,
         threshold: f64,
+        airspace: &mut impl Airspace,
         random: &mut Random,
         touched: &mut Touched,
     ) -> bool {
@@ -69,11 +71,12 @@ impl Recreate {
         let mut longest: f64 = 0.0;
         for index in 0..self.keyed.len() {
             let visit = self.keyed[index].1;
-            let Some(place) = self.cheapest_place(network, state, visit, objective, random) else {
+            let Some(place) = self.cheapest_place(network, state, visit, objective, airspace, random) else {
                 return false;
             };
             state.insert(visit, place.after, place.leg_in, place.leg_out, place.added, touched);
             let route = state.nodes[visit as usize].route;
+            airspace.assign(visit, route);
             longest = longest.max(state.route_costs[route as usize]);
             // Costs only grow from here on, so that a lower bound over the threshold decides.
             if objective.max_weight * longest + objective.total_weight * state.total > threshold {
@@ -120,6 +123,7 @@ impl Recreate {
         state: &State,
         visit: u32,
         objective: &Objective,
+        airspace: &mut impl Airspace,
         random: &mut Random,
     ) -> Option<Place> {
         let service = network.services[visit as usize];
@@ -134,7 +138,10 @@ impl Recreate {
                 let cost = state.route_costs[route as usize] + added;
                 let overflow = cost - objective.target;
                 let price = if overflow > 0.0 { added + OVERFLOW_PRICE * overflow.min(added) } else { added };
-                if price < *best_price && cost <= objective.cap && !self.is_blink(random) {
+                if price < *best_price
+                    && cost <= objective.cap
+                    && airspace.admits(visit, route)
+                    && !self.is_blink(random) {
                     *best_price = price;
                     best = Place { after, leg_in, leg_out, added };
                 }

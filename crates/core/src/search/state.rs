@@ -7,11 +7,11 @@
 use super::network::Network;
 
 /// Route of a visit that no route makes at the moment.
-pub(super) const ABSENT: u32 = u32::MAX;
+pub(crate) const ABSENT: u32 = u32::MAX;
 
 /// A visit or a depot copy.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// Cost of the leg to `next`.
     pub leg_after: f64,
     pub previous: u32,
@@ -22,7 +22,7 @@ pub(super) struct Node {
 
 /// A solution under change.
 #[derive(Clone, Debug)]
-pub(super) struct State {
+pub(crate) struct State {
     pub nodes: Vec<Node>,
     /// Legs and service per route.
     pub route_costs: Vec<f64>,
@@ -32,7 +32,7 @@ pub(super) struct State {
 
 /// Which parts of a state differ from the state it was copied from; members may repeat.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Touched {
+pub(crate) struct Touched {
     pub nodes: Vec<u32>,
     pub routes: Vec<u32>,
 }
