@@ -129,23 +129,24 @@ impl Recreate {
         let service = network.services[visit as usize];
         let mut best_price = f64::INFINITY;
         let mut best = Place { after: ABSENT, leg_in: 0.0, leg_out: 0.0, added: 0.0 };
-        let mut consider =
-            |best_price: &mut f64, after: u32, leg_in: f64, leg_out: f64, route: u32, leg_removed: f64| {
-                let added = leg_in + leg_out - leg_removed + service;
-                if added >= *best_price {
-                    return;
-                }
-                let cost = state.route_costs[route as usize] + added;
-                let overflow = cost - objective.target;
-                let price = if overflow > 0.0 { added + OVERFLOW_PRICE * overflow.min(added) } else { added };
-                if price < *best_price
-                    && cost <= objective.cap
-                    && airspace.admits(visit, route)
-                    && !self.is_blink(random) {
-                    *best_price = price;
-                    best = Place { after, leg_in, leg_out, added };
-                }
-            };
+        let mut consider = |best_price: &mut f64,
+                            after: u32,
+                            leg_in: f64,
+                            leg_out: f64,
+                            route: u32,
+                            leg_removed: f64| {
+            let added = leg_in + leg_out - leg_removed + service;
+            if added >= *best_price {
+                return;
+            }
+            let cost = state.route_costs[route as usize] + added;
+            let overflow = cost - objective.target;
+            let price = if overflow > 0.0 { added + OVERFLOW_PRICE * overflow.min(added) } else { added };
+            if price < *best_price && cost <= objective.cap && airspace.admits(visit, route) && !self.is_blink(random) {
+                *best_price = price;
+                best = Place { after, leg_in, leg_out, added };
+            }
+        };
         let mut reach = 0.0;
         for neighbour in network.neighbours(visit) {
             let (leg, near) = (neighbour.leg, neighbour.node);

@@ -155,7 +155,8 @@ impl<'a> Cutter<'a> {
         self.keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         if let Order::Around(share) = order {
             let first = place_after_widest_gap(&self.keyed);
-            let (before, after) = (self.keyed[(first + self.keyed.len() - 1) % self.keyed.len()].1, self.keyed[first].1);
+            let (before, after) =
+                (self.keyed[(first + self.keyed.len() - 1) % self.keyed.len()].1, self.keyed[first].1);
             let is_surrounded = cross(points[before as usize], depot, points[after as usize]) > 0.0;
             let first = if is_surrounded { (share * self.keyed.len() as f64) as usize } else { first };
             self.keyed.rotate_left(first);

@@ -18,13 +18,19 @@ pub(super) struct Hulls<'a> {
     /// Place of each visit among the members of its route.
     places: Vec<u32>,
     /// Corners of each route's hull, counter-clockwise.
-    corners: Vec<Vec<u32>>,
+    corners: Vec<Vec<Corner>>,
     /// What was asked about the visit that is to change its route.
     asked: Vec<Question>,
     /// What was assigned since it was last kept.
     changes: Vec<Change>,
     /// Below this a cross product is rounding noise.
     tolerance: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Corner {
+    visit: u32,
+    point: Point,
 }
 
 struct Question {
@@ -34,8 +40,8 @@ struct Question {
 }
 
 struct NewCorners {
-    left: Vec<u32>,
-    joined: Vec<u32>,
+    left: Vec<Corner>,
+    joined: Vec<Corner>,
 }
 
 struct Change {
@@ -63,26 +69,22 @@ impl<'a> Hulls<'a> {
             for &visit in part {
                 hulls.join(visit, route as u32);
             }
-            hulls.corners[route] = hulls.hull(part.clone());
+            hulls.corners[route] = hulls.hull(part.iter().copied());
         }
         hulls
     }
 
     /// Whether no two hulls touch.
     pub fn are_apart(&self) -> bool {
-        let polygons: Vec<Vec<Point>> = self.corners.iter().map(|corners| self.positions(corners)).collect();
-        polygons
+        self.corners
             .iter()
             .enumerate()
-            .all(|(index, one)| polygons[..index].iter().all(|other| are_apart(one, other, self.tolerance)))
+            .all(|(index, one)| self.corners[..index].iter().all(|other| are_apart(one, other, self.tolerance)))
     }
 
-    fn positions(&self, visits: &[u32]) -> Vec<Point> {
-        visits.iter().map(|&visit| self.points[visit as usize]).collect()
-    }
-
-    fn hull(&self, visits: Vec<u32>) -> Vec<u32> {
-        convex_hull(&self.positions(&visits)).into_iter().map(|corner| visits[corner]).collect()
+    fn hull(&self, visits: impl Iterator<Item = u32>) -> Vec<Corner> {
+        let (visits, points): (Vec<u32>, Vec<Point>) = visits.map(|visit| (visit, self.points[visit as usize])).unzip();
+        convex_hull(&points).into_iter().map(|place| Corner { visit: visits[place], point: points[place] }).collect()
     }
 
     fn join(&mut self, visit: u32, route: u32) {
@@ -101,43 +103,62 @@ impl<'a> Hulls<'a> {
 
     /// Both hulls after `visit` has changed to `route`, if they would be apart from each other and the rest.
     fn corners_after(&self, visit: u32, route: u32) -> Option<NewCorners> {
-        let left_route = self.routes[visit as usize] as usize;
-        let place = self.corners[left_route].iter().position(|&corner| corner == visit)?;
-        let mut joined = self.corners[route as usize].clone();
-        joined.push(visit);
-        let joined = self.hull(joined);
-        let spike = self.spike(&joined, visit);
-        let is_clear = |corners: &[u32]| are_apart(&spike, &self.positions(corners), self.tolerance);
-        let others = self.corners.iter().enumerate().filter(|&(other, _)| other != left_route && other != route as usize);
-        if !others.into_iter().all(|(_, corners)| is_clear(corners)) {
+        let left_route = self.routes[visit as usize];
+        let place = self.corners[left_route as usize].iter().position(|corner| corner.visit == visit)?;
+        let joined = self.corners_with(route, visit)?;
+        let spike: &[Corner] = match joined[..] {
+            [after, .., before, corner] => &[before, corner, after],
+            _ => &joined,
+        };
+        let is_clear = |corners: &[Corner]| are_apart(spike, corners, self.tolerance);
+        let mut others = (0..).zip(&self.corners).filter(|&(other, _)| other != left_route && other != route);
+        if !others.all(|(_, corners)| is_clear(corners)) {
             return None;
         }
         let left = self.corners_without(left_route, place);
         is_clear(&left).then_some(NewCorners { left, joined })
     }
 
-    /// What `visit` adds to a hull: the triangle with its neighbours on the new hull.
-    fn spike(&self, joined: &[u32], visit: u32) -> Vec<Point> {
-        let place = joined.iter().position(|&corner| corner == visit).unwrap_or(0);
-        let size = joined.len();
-        let spike = [place + size - 1, place, place + 1].map(|corner| joined[corner % size]);
-        self.positions(if size < 3 { joined } else { &spike })
+    /// The hull of a route with a visit outside it, which comes last; none if the visit is inside.
+    fn corners_with(&self, route: u32, visit: u32) -> Option<Vec<Corner>> {
+        let corners = &self.corners[route as usize];
+        let (size, point) = (corners.len(), self.points[visit as usize]);
+        let is_hidden = |edge: usize| cross(corners[edge % size].point, corners[(edge + 1) % size].point, point) > 0.0;
+        let mut starts = (0..size).filter(|&edge| is_hidden(edge) && !is_hidden(edge + size - 1));
+        let mut grown = match (starts.next(), starts.next()) {
+            (Some(start), None) => {
+                let num_hidden = (start..start + size).take_while(|&edge| is_hidden(edge)).count();
+                (start..=start + num_hidden).map(|place| corners[place % size]).collect()
+            }
+            // A hull without area, or rounding on a nearly straight border.
+            _ => {
+                let hull = self.hull(corners.iter().map(|corner| corner.visit).chain([visit]));
+                let place = hull.iter().position(|corner| corner.visit == visit)?;
+                let size = hull.len();
+                (place + 1..place + size).map(|place| hull[place % size]).collect::<Vec<Corner>>()
+            }
+        };
+        grown.push(Corner { visit, point });
+        Some(grown)
     }
 
     /// The hull of a route without the corner at `place`.
-    fn corners_without(&self, route: usize, place: usize) -> Vec<u32> {
-        let corners = &self.corners[route];
-        let (size, visit) = (corners.len(), corners[place]);
-        let mut candidates: Vec<u32> = corners.iter().copied().filter(|&corner| corner != visit).collect();
-        let others = self.members[route].iter().copied().filter(|&member| member != visit);
+    fn corners_without(&self, route: u32, place: usize) -> Vec<Corner> {
+        let corners = &self.corners[route as usize];
+        let (size, visit) = (corners.len(), corners[place].visit);
+        let others = self.members[route as usize].iter().copied().filter(|&member| member != visit);
         if size < 3 {
-            candidates = others.collect();
-        } else {
-            // Only what lies beyond the line between the corner's neighbours can become a corner.
-            let [before, after] = [place + size - 1, place + 1].map(|corner| self.points[corners[corner % size] as usize]);
-            candidates.extend(others.filter(|&member| cross(before, after, self.points[member as usize]) < 0.0));
+            return self.hull(others);
         }
-        self.hull(candidates)
+        // Only what lies beyond the line between the corner's neighbours can become a corner.
+        let (before, after) = (corners[(place + size - 1) % size], corners[(place + 1) % size]);
+        let beyond = others.filter(|&member| cross(before.point, after.point, self.points[member as usize]) < 0.0);
+        let kept = (place + 1..place + size).map(|kept| corners[kept % size]);
+        let mut beyond = beyond.peekable();
+        if beyond.peek().is_none() {
+            return kept.collect();
+        }
+        self.hull(kept.map(|corner| corner.visit).chain(beyond))
     }
 }
 
@@ -195,19 +216,19 @@ impl Airspace for Hulls<'_> {
             self.join(visit, state.nodes[visit as usize].route);
         }
         for route in 0..self.members.len() {
-            self.corners[route] = self.hull(self.members[route].clone());
+            self.corners[route] = self.hull(self.members[route].iter().copied());
         }
     }
 }
 
 /// Whether two convex polygons (corners counter-clockwise; points and segments too) have no point in common, not even one on
 /// their borders.
-fn are_apart(one: &[Point], other: &[Point], tolerance: f64) -> bool {
+fn are_apart(one: &[Corner], other: &[Corner], tolerance: f64) -> bool {
     if one.is_empty() || other.is_empty() {
         return true;
     }
     if one.len() < 3 && other.len() < 3 {
-        let ends = [one[0], one[one.len() - 1], other[0], other[other.len() - 1]];
+        let ends = [one[0], one[one.len() - 1], other[0], other[other.len() - 1]].map(|corner| corner.point);
         let axes = [(ends[0], ends[1]), (ends[2], ends[3]), (ends[0], ends[2])];
         if axes.into_iter().any(|(from, to)| has_gap_along(to - from, one, other, tolerance)) {
             return true;
@@ -217,20 +238,21 @@ fn are_apart(one: &[Point], other: &[Point], tolerance: f64) -> bool {
 }
 
 /// Whether `other` lies strictly outside the line along an edge of `one`.
-fn has_separating_edge(one: &[Point], other: &[Point], tolerance: f64) -> bool {
-    let mut from = one[one.len() - 1];
-    one.iter().any(|&to| {
-        let is_separating = other.iter().all(|&place| cross(from, to, place) < -tolerance);
-        from = to;
+fn has_separating_edge(one: &[Corner], other: &[Corner], tolerance: f64) -> bool {
+    let mut from = one[one.len() - 1].point;
+    one.iter().any(|to| {
+        let is_separating = other.iter().all(|corner| cross(from, to.point, corner.point) < -tolerance);
+        from = to.point;
         is_separating
     })
 }
 
-fn has_gap_along(axis: Point, one: &[Point], other: &[Point], tolerance: f64) -> bool {
-    let range = |points: &[Point]| {
-        points.iter().map(|&point| dot(axis, point - one[0])).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
-            (low.min(at), high.max(at))
-        })
+fn has_gap_along(axis: Point, one: &[Corner], other: &[Corner], tolerance: f64) -> bool {
+    let range = |corners: &[Corner]| {
+        corners
+            .iter()
+            .map(|corner| dot(axis, corner.point - one[0].point))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
     };
     let ((low, high), (other_low, other_high)) = (range(one), range(other));
     other_low > high + tolerance || low > other_high + tolerance
