@@ -257,3 +257,81 @@ fn has_gap_along(axis: Point, one: &[Corner], other: &[Corner], tolerance: f64) 
     let ((low, high), (other_low, other_high)) = (range(one), range(other));
     other_low > high + tolerance || low > other_high + tolerance
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Problem;
+    use crate::random::Random;
+    use proptest::prelude::*;
+
+    fn polygon(points: &[(f64, f64)]) -> Vec<Corner> {
+        (0..).zip(points).map(|(visit, &(x, y))| Corner { visit, point: Point::new(x, y) }).collect()
+    }
+
+    #[test]
+    fn polygons_segments_and_points_apart() {
+        let square = polygon(&[(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]);
+        let is_apart_from_square = |points: &[(f64, f64)]| are_apart(&square, &polygon(points), 1e-9);
+        assert!(is_apart_from_square(&[(3.0, 1.0)]));
+        assert!(!is_apart_from_square(&[(2.0, 1.0)]));
+        assert!(!is_apart_from_square(&[(3.0, 0.0), (0.0, 3.5)]));
+        assert!(is_apart_from_square(&[(5.0, 0.0), (0.0, 5.0)]));
+        assert!(is_apart_from_square(&[(2.5, 0.0), (4.0, 0.0)]));
+        assert!(is_apart_from_square(&[]));
+        let segment = polygon(&[(0.0, 0.0), (2.0, 0.0)]);
+        assert!(are_apart(&segment, &polygon(&[(3.0, 0.0), (4.0, 0.0)]), 1e-9));
+        assert!(!are_apart(&segment, &polygon(&[(1.0, 0.0), (4.0, 0.0)]), 1e-9));
+        assert!(!are_apart(&segment, &polygon(&[(1.0, -1.0), (1.0, 1.0)]), 1e-9));
+        assert!(!are_apart(&polygon(&[(1.0, 1.0)]), &polygon(&[(1.0, 1.0)]), 1e-9));
+    }
+
+    /// The corners as a set: where the list begins is of no meaning.
+    fn sorted_corners(corners: &[Corner]) -> Vec<u32> {
+        let mut visits: Vec<u32> = corners.iter().map(|corner| corner.visit).collect();
+        visits.sort_unstable();
+        visits
+    }
+
+    proptest! {
+        #[test]
+        fn admitted_changes_keep_hulls_apart_and_true_and_can_be_taken_back(
+            places in prop::collection::hash_set((0u8..9, 0u8..9), 6..50), seed in 0u64..1000,
+        ) {
+            let mut points: Vec<Point> = places.iter().map(|&(x, y)| Point::new(x.into(), y.into())).collect();
+            points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+            let problem = Problem::research(Point::new(-1.0, -1.0), &points, 3).unwrap();
+            let network = Network::new(&problem);
+            let parts: Vec<Vec<u32>> = (0..3)
+                .map(|route| ((points.len() * route / 3) as u32..(points.len() * (route + 1) / 3) as u32).collect())
+                .collect();
+            let mut hulls = Hulls::new(&network, &parts);
+            prop_assert!(hulls.are_apart());
+            let mut random = Random::new(seed);
+            for round in 0..20 {
+                let before = hulls.routes.clone();
+                for _ in 0..20 {
+                    let (visit, route) = (random.below(points.len()) as u32, random.below(3) as u32);
+                    if hulls.admits(visit, route) {
+                        hulls.assign(visit, route);
+                    }
+                }
+                if round % 2 == 0 {
+                    hulls.keep();
+                } else {
+                    hulls.undo();
+                    prop_assert_eq!(&before, &hulls.routes);
+                }
+                let mut parts = vec![Vec::new(); 3];
+                for (visit, &route) in hulls.routes.iter().enumerate() {
+                    parts[route as usize].push(visit as u32);
+                }
+                let fresh = Hulls::new(&network, &parts);
+                prop_assert!(fresh.are_apart());
+                for (one, other) in fresh.corners.iter().zip(&hulls.corners) {
+                    prop_assert_eq!(sorted_corners(one), sorted_corners(other));
+                }
+            }
+        }
+    }
+}
