@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pondhop
-from pondhop import InvalidInput, Problem
+from pondhop import InvalidInput, Problem, _core
 from pondhop.planners import PLANNERS
 
 
@@ -67,3 +67,18 @@ def test_a_name_like_no_other_lists_the_planners(problem: Problem) -> None:
     with pytest.raises(InvalidInput) as caught:
         pondhop.solve(problem, planner="simulated annealing")
     assert "hpp" in caught.value.faults[0].action
+
+
+def test_territory_keeps_drones_apart_on_shorter_routes_than_hpp() -> None:
+    for farm in pondhop.generate(120, 4, seed=5):
+        problem = farm.to_problem(5)
+        territory = pondhop.solve(problem, planner="territory").plan
+        separation = _core.separation(problem, territory.routes)
+        assert separation.overlap < 1e-9
+        assert separation.num_crossings == 0
+        assert territory.max_route_length < 0.9 * pondhop.solve(problem, planner="hpp").plan.max_route_length
+
+
+def test_territory_within_a_time_limit_long_over() -> None:
+    (farm,) = pondhop.generate(150, 1, seed=5)
+    assert pondhop.solve(farm.to_problem(5), planner="territory", time_limit_s=1e-6).plan.is_feasible

@@ -48,7 +48,7 @@ app = typer.Typer(
 
 Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults on stderr as JSON, for programs.")]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
-PlannerName = Annotated[str, typer.Option(help="Which planner: hpp.")]
+PlannerName = Annotated[str, typer.Option(help="Which planner: hpp or territory.")]
 TimeLimit = Annotated[
     float | None, typer.Option("--time-limit", metavar="SECONDS", help="Wall time of planning one farm.")
 ]

@@ -75,6 +75,11 @@ PLANNERS = {
             "the paper's planner: k-means clusters, each flown back and forth; a territory for every drone",
             lambda problem, effort: _core.hpp(problem, seed=effort.seed),
         ),
+        Planner(
+            "territory",
+            "balanced and short routes, each in a territory of its own: the hulls of their ponds do not touch",
+            lambda problem, effort: _core.territory(problem, seed=effort.seed, time_limit_s=effort.time_limit_s),
+        ),
     )
 }
 """The planners of this package by name."""

@@ -11,6 +11,7 @@ mod hpp;
 mod plan;
 mod problem;
 mod separation;
+mod territory;
 mod travel;
 
 use pyo3::prelude::*;
@@ -32,6 +33,8 @@ mod _core {
     use crate::problem::Problem;
     #[pymodule_export]
     use crate::separation::{Separation, separation};
+    #[pymodule_export]
+    use crate::territory::territory;
     #[pymodule_export]
     use crate::travel::LocalFrame;
 
