@@ -195,15 +195,17 @@ fn members_of(labels: &[usize]) -> Vec<Vec<usize>> {
 /// to an axis cost nothing, and the next leg is reckoned from where the drone was before.
 fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance) -> f64 {
     let east = Point::new(1.0, 0.0);
-    let (mut position, mut direction, mut duration) = (depot, east, 0.0);
+    let (mut position, mut direction) = (depot, east);
+    let (mut turned, mut length) = (0.0, 0.0);
     for corner in corners.chain([depot]) {
         let leg = corner - position;
         if leg.x.abs() > tolerance.length && leg.y.abs() > tolerance.length {
-            duration += turn(direction, leg) / TURN_RATE + dot(leg, leg).sqrt() / SPEED;
+            turned += turn(direction, leg);
+            length += dot(leg, leg).sqrt();
             (position, direction) = (corner, leg);
         }
     }
-    duration + turn(direction, east) / TURN_RATE
+    (turned + turn(direction, east)) / TURN_RATE + length / SPEED
 }
 
 /// The angle between two directions, in [0, π].
@@ -271,7 +273,8 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
 /// order; along the first axis, by the second coordinate too. Ponds that no leg takes come last, in input order.
 #[must_use]
 pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
-    let mut order = Vec::with_capacity(ponds.len());
+    let mut order = vec![0; ponds.len()];
+    let mut num_ordered = 0;
     let mut remaining: Vec<(usize, Point)> = ponds.iter().map(|&pond| path.frame.enter(pond)).enumerate().collect();
     let (margin_along, margin_across) =
         (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
@@ -286,17 +289,23 @@ pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tol
             if is_vertical { (margin_across, margin_along) } else { (margin_along, margin_across) };
         let (left, right) = (start.x.min(end.x) - margin_x, start.x.max(end.x) + margin_x);
         let (bottom, top) = (start.y.min(end.y) - margin_y, start.y.max(end.y) + margin_y);
-        let first = order.len();
-        remaining.retain(|&(index, pond)| {
-            let is_passed = left <= pond.x && pond.x <= right && bottom <= pond.y && pond.y <= top;
-            if is_passed {
-                order.push(index);
-            }
-            !is_passed
-        });
-        sort_along(direction, ponds, &mut order[first..], tolerance);
+        let first = num_ordered;
+        let mut num_kept = 0;
+        // Both are written and one is counted: which of the two it is cannot be predicted.
+        for place in 0..remaining.len() {
+            let (index, pond) = remaining[place];
+            let is_passed = (left <= pond.x) & (pond.x <= right) & (bottom <= pond.y) & (pond.y <= top);
+            order[num_ordered] = index;
+            num_ordered += usize::from(is_passed);
+            remaining[num_kept] = (index, pond);
+            num_kept += usize::from(!is_passed);
+        }
+        remaining.truncate(num_kept);
+        sort_along(direction, ponds, &mut order[first..num_ordered], tolerance);
     }
-    order.extend(remaining.into_iter().map(|(index, _)| index));
+    for (place, (index, _)) in order[num_ordered..].iter_mut().zip(remaining) {
+        *place = index;
+    }
     order
 }
 

@@ -264,13 +264,19 @@ impl Chord {
     /// The chord at `x` of the polygon of `corners`. The place on an edge is reckoned as a cut of two segments, the line
     /// being `height` long: theirs to the last bit, which decides where [`Tolerance::EXACT`] is asked for.
     fn at(corners: &[Point], x: f64, height: f64, tolerance: Tolerance) -> Self {
+        let margin = height * tolerance.length;
+        // Edges that even rounding does not bring to the line are passed over.
+        let reach = tolerance.length + 1e-12 * height;
         let mut chord = Self { num_ends: 0, low: Point::default(), high: Point::default() };
         for (index, &from) in corners.iter().enumerate() {
             let to = corners[if index + 1 < corners.len() { index + 1 } else { 0 }];
             let run = to.x - from.x;
+            let (left, right) = if run > 0.0 { (from.x, to.x) } else { (to.x, from.x) };
+            if x < left - reach || right + reach < x {
+                continue;
+            }
             let (part, whole) = (height * (x - from.x), height * run);
             let (part, whole) = if run < 0.0 { (-part, -whole) } else { (part, whole) };
-            let margin = height * tolerance.length;
             if whole > margin && -margin <= part && part <= whole + margin {
                 let share = part.clamp(0.0, whole) / whole;
                 let end = Point::new(from.x + run * share, from.y + (to.y - from.y) * share);
