@@ -193,7 +193,9 @@ fn members_of(labels: &[usize]) -> Vec<Vec<usize>> {
 ///
 /// Quirk kept: a corner that differs from the drone's position in only one coordinate is passed over, so that legs parallel
 /// to an axis cost nothing, and the next leg is reckoned from where the drone was before.
-fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance) -> f64 {
+///
+/// Infinite as soon as it is certain to exceed `limit`.
+fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance, limit: f64) -> f64 {
     let east = Point::new(1.0, 0.0);
     let (mut position, mut direction) = (depot, east);
     let (mut turned, mut length) = (0.0, 0.0);
@@ -202,6 +204,9 @@ fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance
         if leg.x.abs() > tolerance.length && leg.y.abs() > tolerance.length {
             turned += turn(direction, leg);
             length += dot(leg, leg).sqrt();
+            if length > limit * SPEED {
+                return f64::INFINITY;
+            }
             (position, direction) = (corner, leg);
         }
     }
@@ -233,7 +238,7 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
     let polygon = ClosedPolygon::new(hull, tolerance);
     let pairs = if hull.len() < 3 { Vec::new() } else { polygon.caliper_pairs() };
     let mut best = SweepPath { frame: Frame::UNTURNED, corners: hull.to_vec() };
-    let mut best_cost = f64::INFINITY;
+    let mut best_duration = f64::INFINITY;
     let mut tried = Vec::with_capacity(pairs.len());
     let (mut local, mut path, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for pair in pairs {
@@ -248,13 +253,13 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
         sweep_path(&local, pitch, sweep.starts_up, tolerance, &mut path);
         corners.clear();
         corners.extend(path.iter().map(|&corner| frame.leave(corner)));
-        let forward = flight_duration(depot, corners.iter().copied(), tolerance);
-        let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance);
+        let forward = flight_duration(depot, corners.iter().copied(), tolerance, best_duration);
+        let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance, forward.min(best_duration));
         // Costs are sums of the same terms in different order: equal ones differ by rounding.
         let is_forward = forward < backward - tolerance.length;
-        let cost = if is_forward { forward } else { backward };
-        if cost < best_cost - tolerance.length {
-            best_cost = cost;
+        let duration = if is_forward { forward } else { backward };
+        if duration < best_duration - tolerance.length {
+            best_duration = duration;
             if !is_forward {
                 corners.reverse();
             }
