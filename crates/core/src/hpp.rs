@@ -6,25 +6,27 @@
 //! Herrera-Lozada, Coverage path planning for 2D convex regions, J. Intell. Robot. Syst. 2020 (doi
 //! 10.1007/s10846-019-01024-y), which the paper reaches through Mukherjee's Optimal Coverage Algorithm. The steps:
 //!
-//! 1. [`cluster`]: k-means; undersized clusters are repaired.
+//! 1. `cluster`: k-means; a cluster that is no polygon is repaired.
 //! 2. [`convex_hull_within`] of each cluster.
 //! 3. [`ClosedPolygon::caliper_pairs`]: pairs of hull corners.
 //! 4. [`ClosedPolygon::sweep_of_pair`], [`sweep_path`]: a back-and-forth path for each pair.
 //! 5. [`cheapest_path`]: the cheapest of them, from the depot and back.
 //! 6. [`order_along`]: the ponds in the order in which that path passes them.
 //!
-//! Complexity: O(n k) per k-means iteration, then per cluster O(h (h + l)) for steps 2 to 5 and O(n l) for step 6, with h
-//! corners of the hull and l sweep lines, both about the root of the cluster's ponds.
+//! Complexity: O(n k) per k-means iteration, then per cluster of n ponds O(n log n + h² l) for steps 2 to 5 and O(n l) for
+//! step 6, with h corners of the hull and l sweep lines, about the root of n.
 //!
 //! Quirks of the code that decide the routes are kept: a closed counter-clockwise hull goes to a routine for open clockwise
-//! ones ([`ClosedPolygon::caliper_pairs`]), and a leg parallel to an axis costs nothing ([`Turning::cost`]). Changed:
+//! ones ([`ClosedPolygon::caliper_pairs`]), and a leg parallel to an axis costs nothing (`flight_duration`). Changed:
 //! - No pond is lost or visited twice. The code takes the ponds inside each hull, which misses those on slanted sides and
-//!   takes some of other clusters; here the ponds of a cluster are those of its label.
-//! - What rounding decided there (does a line meet the side it runs along?) is decided here by a tolerance of 1e-9 of the
-//!   farm's side, in favour of the side.
+//!   takes some of other clusters; here the ponds of a cluster are those that k-means and the repair give it.
+//! - Rounding decides nothing. In the code it decides whether a line meets the side it runs along and which legs are
+//!   parallel to an axis; here a [`Tolerance`] of 1e-9 of the farm's side does. With [`Tolerance::EXACT`], steps 3 to 6
+//!   follow the code to the last bit.
 //! - Nothing depends on units. The code has a unit square of 1000 units, 10 units/s and π/4 rad/s, so that a radian of turn
-//!   costs as much as 1.27 % of the square's side; here it costs 1.27 % of the farm's side ([`Turning::of_farm`]). The pitch
-//!   is not given but measured ([`pitch`]); on the paper's farms it is the same.
+//!   costs as much as 1.27 % of the square's side. Here the longer side of the box around the ponds is 1000 units, which is
+//!   0.5 to 0.95 of the unit square's side on the paper's farms (median 0.79). The pitch is not given but measured (`pitch`); on the paper's
+//!   farms it is the same.
 
 use crate::geometry::{Point, convex_hull_within, cross, dot, extent};
 use crate::kmeans::{Clustering, kmeans};
@@ -200,7 +202,7 @@ fn pond_to_take(
 }
 
 /// Step 5: the seconds from the depot along the corners and back: all legs, and all turns between a start and an end that
-/// head east (Vasquez-Gomez et al. 2018: the time cost of a path).
+/// head east (Vasquez-Gomez et al.: the time cost of a path).
 ///
 /// Quirk kept: a corner that differs from the drone's position in only one coordinate is passed over, so that legs parallel
 /// to an axis cost nothing, and the next leg is reckoned from where the drone was before.
@@ -210,12 +212,13 @@ fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance
     let east = Point::new(1.0, 0.0);
     let (mut position, mut direction) = (depot, east);
     let (mut turned, mut length) = (0.0, 0.0);
+    let limit_length = limit * SPEED * (1.0 + 1e-12);
     for corner in corners.chain([depot]) {
         let leg = corner - position;
         if leg.x.abs() > tolerance.length && leg.y.abs() > tolerance.length {
             turned += turn(direction, leg);
             length += dot(leg, leg).sqrt();
-            if length > limit * SPEED {
+            if turned * (SPEED / TURN_RATE) + length > limit_length {
                 return f64::INFINITY;
             }
             (position, direction) = (corner, leg);
@@ -266,7 +269,7 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
         corners.extend(path.iter().map(|&corner| frame.leave(corner)));
         let forward = flight_duration(depot, corners.iter().copied(), tolerance, best_duration);
         let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance, forward.min(best_duration));
-        // Costs are sums of the same terms in different order: equal ones differ by rounding.
+        // Sums of the same terms in different order: equal ones differ by rounding.
         let is_forward = forward < backward - tolerance.length;
         let duration = if is_forward { forward } else { backward };
         if duration < best_duration - tolerance.length {
