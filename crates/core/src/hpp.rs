@@ -6,28 +6,30 @@
 //! Herrera-Lozada, Coverage path planning for 2D convex regions, J. Intell. Robot. Syst. 2020 (doi
 //! 10.1007/s10846-019-01024-y), which the paper reaches through Mukherjee's Optimal Coverage Algorithm. The steps:
 //!
-//! 1. [`cluster`]: k-means; undersized clusters are repaired.
+//! 1. `cluster`: k-means; a cluster that is no polygon is repaired.
 //! 2. [`convex_hull_within`] of each cluster.
 //! 3. [`ClosedPolygon::caliper_pairs`]: pairs of hull corners.
 //! 4. [`ClosedPolygon::sweep_of_pair`], [`sweep_path`]: a back-and-forth path for each pair.
 //! 5. [`cheapest_path`]: the cheapest of them, from the depot and back.
 //! 6. [`order_along`]: the ponds in the order in which that path passes them.
 //!
-//! Complexity: O(n k) per k-means iteration, then per cluster O(h (h + l)) for steps 2 to 5 and O(n l) for step 6, with h
-//! corners of the hull and l sweep lines, both about the root of the cluster's ponds.
+//! Complexity: O(n k) per k-means iteration, then per cluster of n ponds O(n log n + h² l) for steps 2 to 5 and O(n l) for
+//! step 6, with h corners of the hull and l sweep lines, about the root of n.
 //!
 //! Quirks of the code that decide the routes are kept: a closed counter-clockwise hull goes to a routine for open clockwise
-//! ones ([`ClosedPolygon::caliper_pairs`]), and a leg parallel to an axis costs nothing ([`Turning::cost`]). Changed:
+//! ones ([`ClosedPolygon::caliper_pairs`]), and a leg parallel to an axis costs nothing (`flight_duration`). Changed:
 //! - No pond is lost or visited twice. The code takes the ponds inside each hull, which misses those on slanted sides and
-//!   takes some of other clusters; here the ponds of a cluster are those of its label.
-//! - What rounding decided there (does a line meet the side it runs along?) is decided here by a tolerance of 1e-9 of the
-//!   farm's side, in favour of the side.
+//!   takes some of other clusters; here the ponds of a cluster are those that k-means and the repair give it.
+//! - Rounding decides nothing. In the code it decides whether a line meets the side it runs along and which legs are
+//!   parallel to an axis; here a [`Tolerance`] of 1e-9 of the farm's side does. With [`Tolerance::EXACT`], steps 3 to 6
+//!   follow the code to the last bit.
 //! - Nothing depends on units. The code has a unit square of 1000 units, 10 units/s and π/4 rad/s, so that a radian of turn
-//!   costs as much as 1.27 % of the square's side; here it costs 1.27 % of the farm's side ([`Turning::of_farm`]). The pitch
-//!   is not given but measured ([`pitch`]); on the paper's farms it is the same.
+//!   costs as much as 1.27 % of the square's side. Here the longer side of the box around the ponds is 1000 units, which is
+//!   0.5 to 0.95 of the unit square's side on the paper's farms (median 0.79). The pitch is not given but measured (`pitch`); on the paper's
+//!   farms it is the same.
 
 use crate::geometry::{Point, convex_hull_within, cross, dot, extent};
-use crate::kmeans::kmeans;
+use crate::kmeans::{Clustering, kmeans};
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::sweep::{ClosedPolygon, Frame, Tolerance, sweep_path};
@@ -85,10 +87,8 @@ pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
     let depot = enter(problem.depot().position);
     let tolerance = Tolerance::of_side(SIDE);
     let pitch = pitch(&ponds);
-    let labels = cluster(&ponds, problem.vehicle_type().num_available, tolerance, &mut Random::new(seed));
-    let clusters = members_of(&labels)
+    let clusters = cluster(&ponds, problem.vehicle_type().num_available, tolerance, &mut Random::new(seed))
         .into_iter()
-        .filter(|members| !members.is_empty())
         .map(|members| {
             let own: Vec<Point> = members.iter().map(|&pond| ponds[pond]).collect();
             let corners = convex_hull_within(&own, tolerance.length);
@@ -135,75 +135,96 @@ fn nearest_square(ponds: &[Point], place: Point) -> f64 {
 ///
 /// A cluster too small or too flat to form a polygon takes the nearest ponds of its neighbours (same section), as long as
 /// the neighbour keeps a polygon of its own: with fewer than three ponds a drone, some clusters stay small.
-fn cluster(ponds: &[Point], num_clusters: usize, tolerance: Tolerance, random: &mut Random) -> Vec<usize> {
-    let clustering = kmeans(ponds, num_clusters, random);
-    let mut labels = clustering.labels;
-    for (label, &centroid) in clustering.centroids.iter().enumerate() {
-        while let Some(taken) = pond_to_take(ponds, &labels, label, centroid, tolerance) {
+fn cluster(ponds: &[Point], num_clusters: usize, tolerance: Tolerance, random: &mut Random) -> Vec<Vec<usize>> {
+    let Clustering { mut labels, centroids } = kmeans(ponds, num_clusters, random);
+    let mut members = members_of(&labels, centroids.len());
+    for (label, &centroid) in centroids.iter().enumerate() {
+        while !is_polygon(ponds, &members[label], tolerance)
+            && let Some(taken) = pond_to_take(ponds, &labels, &members, label, centroid, tolerance)
+        {
             labels[taken] = label;
+            members = members_of(&labels, centroids.len());
         }
     }
-    labels
+    members.retain(|members| !members.is_empty());
+    members
 }
 
-/// The pond that the cluster `label` takes next: none if it forms a polygon or no neighbour can spare one.
-fn pond_to_take(
-    ponds: &[Point],
-    labels: &[usize],
-    label: usize,
-    centroid: Point,
-    tolerance: Tolerance,
-) -> Option<usize> {
-    let positions = |label: usize, except: usize| -> Vec<Point> {
-        (0..ponds.len()).filter(|&pond| labels[pond] == label && pond != except).map(|pond| ponds[pond]).collect()
-    };
-    let own = positions(label, usize::MAX);
-    let is_small = own.len() < MIN_CLUSTER_SIZE;
-    if !is_small && !is_flat(&own, tolerance) {
-        return None;
-    }
-    let mut others: Vec<usize> = (0..ponds.len()).filter(|&pond| labels[pond] != label).collect();
-    others.sort_by(|&a, &b| ponds[a].distance(centroid).total_cmp(&ponds[b].distance(centroid)));
-    others.into_iter().find(|&candidate| {
-        let donor = positions(labels[candidate], usize::MAX);
-        let rest = positions(labels[candidate], candidate);
-        let can_spare = rest.len() >= MIN_CLUSTER_SIZE && (is_flat(&donor, tolerance) || !is_flat(&rest, tolerance));
-        let mut extended = own.clone();
-        extended.push(ponds[candidate]);
-        can_spare && (is_small || !is_flat(&extended, tolerance))
-    })
-}
-
-/// Whether the points span no polygon.
-fn is_flat(points: &[Point], tolerance: Tolerance) -> bool {
-    convex_hull_within(points, tolerance.length).len() < 3
-}
-
-/// The ponds of each label, in input order.
-fn members_of(labels: &[usize]) -> Vec<Vec<usize>> {
-    let mut members = vec![Vec::new(); labels.iter().max().map_or(0, |&last| last + 1)];
+/// The ponds of each cluster, in input order.
+fn members_of(labels: &[usize], num_clusters: usize) -> Vec<Vec<usize>> {
+    let mut members: Vec<Vec<usize>> =
+        (0..num_clusters).map(|_| Vec::with_capacity(2 * labels.len() / num_clusters)).collect();
     for (pond, &label) in labels.iter().enumerate() {
         members[label].push(pond);
     }
     members
 }
 
+/// Whether the ponds of a cluster span a polygon: at least three that do not lie on a line.
+fn is_polygon(ponds: &[Point], members: &[usize], tolerance: Tolerance) -> bool {
+    if members.len() < MIN_CLUSTER_SIZE {
+        return false;
+    }
+    // Nearly always one of the ponds makes a triangle with the first two.
+    let (first, second) = (ponds[members[0]], ponds[members[1]]);
+    let makes_triangle = |&pond: &usize| {
+        let third = ponds[pond];
+        let longest_side = first.distance(second).max(first.distance(third)).max(second.distance(third));
+        cross(first, second, third).abs() > 2.0 * tolerance.length * longest_side
+    };
+    if members[2..].iter().any(makes_triangle) {
+        return true;
+    }
+    let positions: Vec<Point> = members.iter().map(|&pond| ponds[pond]).collect();
+    convex_hull_within(&positions, tolerance.length).len() > 2
+}
+
+/// The pond nearest to the centroid of a cluster that is no polygon, of those that help and that their cluster can spare.
+fn pond_to_take(
+    ponds: &[Point],
+    labels: &[usize],
+    members: &[Vec<usize>],
+    label: usize,
+    centroid: Point,
+    tolerance: Tolerance,
+) -> Option<usize> {
+    let own = &members[label];
+    let helps =
+        |pond: usize| own.len() < MIN_CLUSTER_SIZE || is_polygon(ponds, &[own.as_slice(), &[pond]].concat(), tolerance);
+    let can_be_spared = |pond: usize| {
+        let donor = &members[labels[pond]];
+        let rest: Vec<usize> = donor.iter().copied().filter(|&other| other != pond).collect();
+        rest.len() >= MIN_CLUSTER_SIZE && (is_polygon(ponds, &rest, tolerance) || !is_polygon(ponds, donor, tolerance))
+    };
+    let mut others: Vec<usize> = (0..ponds.len()).filter(|&pond| labels[pond] != label).collect();
+    others.sort_by(|&a, &b| ponds[a].distance(centroid).total_cmp(&ponds[b].distance(centroid)));
+    others.into_iter().find(|&pond| helps(pond) && can_be_spared(pond))
+}
+
 /// Step 5: the seconds from the depot along the corners and back: all legs, and all turns between a start and an end that
-/// head east (Vasquez-Gomez et al. 2018: the time cost of a path).
+/// head east (Vasquez-Gomez et al.: the time cost of a path).
 ///
 /// Quirk kept: a corner that differs from the drone's position in only one coordinate is passed over, so that legs parallel
 /// to an axis cost nothing, and the next leg is reckoned from where the drone was before.
-fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance) -> f64 {
+///
+/// Infinite as soon as it is certain to exceed `limit`.
+fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance, limit: f64) -> f64 {
     let east = Point::new(1.0, 0.0);
-    let (mut position, mut direction, mut duration) = (depot, east, 0.0);
+    let (mut position, mut direction) = (depot, east);
+    let (mut turned, mut length) = (0.0, 0.0);
+    let limit_length = limit * SPEED * (1.0 + 1e-12);
     for corner in corners.chain([depot]) {
         let leg = corner - position;
         if leg.x.abs() > tolerance.length && leg.y.abs() > tolerance.length {
-            duration += turn(direction, leg) / TURN_RATE + dot(leg, leg).sqrt() / SPEED;
+            turned += turn(direction, leg);
+            length += dot(leg, leg).sqrt();
+            if turned * (SPEED / TURN_RATE) + length > limit_length {
+                return f64::INFINITY;
+            }
             (position, direction) = (corner, leg);
         }
     }
-    duration + turn(direction, east) / TURN_RATE
+    (turned + turn(direction, east)) / TURN_RATE + length / SPEED
 }
 
 /// The angle between two directions, in [0, π].
@@ -231,7 +252,7 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
     let polygon = ClosedPolygon::new(hull, tolerance);
     let pairs = if hull.len() < 3 { Vec::new() } else { polygon.caliper_pairs() };
     let mut best = SweepPath { frame: Frame::UNTURNED, corners: hull.to_vec() };
-    let mut best_cost = f64::INFINITY;
+    let mut best_duration = f64::INFINITY;
     let mut tried = Vec::with_capacity(pairs.len());
     let (mut local, mut path, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for pair in pairs {
@@ -246,13 +267,13 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
         sweep_path(&local, pitch, sweep.starts_up, tolerance, &mut path);
         corners.clear();
         corners.extend(path.iter().map(|&corner| frame.leave(corner)));
-        let forward = flight_duration(depot, corners.iter().copied(), tolerance);
-        let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance);
-        // Costs are sums of the same terms in different order: equal ones differ by rounding.
+        let forward = flight_duration(depot, corners.iter().copied(), tolerance, best_duration);
+        let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance, forward.min(best_duration));
+        // Sums of the same terms in different order: equal ones differ by rounding.
         let is_forward = forward < backward - tolerance.length;
-        let cost = if is_forward { forward } else { backward };
-        if cost < best_cost - tolerance.length {
-            best_cost = cost;
+        let duration = if is_forward { forward } else { backward };
+        if duration < best_duration - tolerance.length {
+            best_duration = duration;
             if !is_forward {
                 corners.reverse();
             }
@@ -271,7 +292,8 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
 /// order; along the first axis, by the second coordinate too. Ponds that no leg takes come last, in input order.
 #[must_use]
 pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
-    let mut order = Vec::with_capacity(ponds.len());
+    let mut order = vec![0; ponds.len()];
+    let mut num_ordered = 0;
     let mut remaining: Vec<(usize, Point)> = ponds.iter().map(|&pond| path.frame.enter(pond)).enumerate().collect();
     let (margin_along, margin_across) =
         (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
@@ -286,17 +308,23 @@ pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tol
             if is_vertical { (margin_across, margin_along) } else { (margin_along, margin_across) };
         let (left, right) = (start.x.min(end.x) - margin_x, start.x.max(end.x) + margin_x);
         let (bottom, top) = (start.y.min(end.y) - margin_y, start.y.max(end.y) + margin_y);
-        let first = order.len();
-        remaining.retain(|&(index, pond)| {
-            let is_passed = left <= pond.x && pond.x <= right && bottom <= pond.y && pond.y <= top;
-            if is_passed {
-                order.push(index);
-            }
-            !is_passed
-        });
-        sort_along(direction, ponds, &mut order[first..], tolerance);
+        let first = num_ordered;
+        let mut num_kept = 0;
+        // Both are written and one is counted: which of the two it is cannot be predicted.
+        for place in 0..remaining.len() {
+            let (index, pond) = remaining[place];
+            let is_passed = (left <= pond.x) & (pond.x <= right) & (bottom <= pond.y) & (pond.y <= top);
+            order[num_ordered] = index;
+            num_ordered += usize::from(is_passed);
+            remaining[num_kept] = (index, pond);
+            num_kept += usize::from(!is_passed);
+        }
+        remaining.truncate(num_kept);
+        sort_along(direction, ponds, &mut order[first..num_ordered], tolerance);
     }
-    order.extend(remaining.into_iter().map(|(index, _)| index));
+    for (place, (index, _)) in order[num_ordered..].iter_mut().zip(remaining) {
+        *place = index;
+    }
     order
 }
 

@@ -48,13 +48,15 @@ pub fn kmeans(points: &[Point], num_clusters: usize, random: &mut Random) -> Clu
         }
         lanes.update_nearest(&centroids, &mut nearest);
         let mut has_moved = false;
-        for ((point, label), &new) in points.iter().zip(&mut labels).zip(nearest.iter().flatten()) {
-            let new = new as usize;
-            if *label != new {
-                has_moved = true;
-                shift(&mut sums[*label], *point, -1.0);
-                shift(&mut sums[new], *point, 1.0);
-                *label = new;
+        for ((points, labels), new_labels) in points.chunks(NUM_LANES).zip(labels.chunks_mut(NUM_LANES)).zip(&nearest) {
+            for ((point, label), &new) in points.iter().zip(labels).zip(new_labels) {
+                let new = new as usize;
+                if *label != new {
+                    has_moved = true;
+                    shift(&mut sums[*label], *point, -1.0);
+                    shift(&mut sums[new], *point, 1.0);
+                    *label = new;
+                }
             }
         }
         if !has_moved {

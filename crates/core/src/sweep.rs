@@ -223,12 +223,13 @@ pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tol
     };
     let pitch = pitch.max((right - left) / MAX_NUM_LINES);
     let height = (top + 1.0) - (bottom - 1.0);
+    let edges = Edge::of_polygon(corners, height, tolerance);
     let mut is_up = starts_up;
     let mut x = left;
     while x < right + pitch / 2.0 - tolerance.length {
-        let mut line = Chord::at(corners, x, height, tolerance);
+        let mut line = Chord::at(&edges, x, height);
         if line.num_ends == 0 {
-            line = Chord::at(corners, x - pitch / 2.0, height, tolerance);
+            line = Chord::at(&edges, x - pitch / 2.0, height);
             line.low.x += pitch / 2.0;
             line.high.x += pitch / 2.0;
         } else if line.num_ends == 1 {
@@ -252,36 +253,68 @@ pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tol
     }
 }
 
+/// An edge of a polygon that vertical lines may meet.
+///
+/// The place on it is reckoned as the cut of two segments, the line being as high as the polygon and one unit more at both
+/// ends: as the authors do to the last bit, which decides where [`Tolerance::EXACT`] is asked for.
+struct Edge {
+    from: Point,
+    rise: Point,
+    /// Between these it may be met; what rounding adds is left to the exact test.
+    left: f64,
+    right: f64,
+    /// The height of the line times the width of the edge, and times the tolerance.
+    whole: f64,
+    margin: f64,
+}
+
+impl Edge {
+    /// The edges that are not vertical, in the order of the corners they leave.
+    fn of_polygon(corners: &[Point], height: f64, tolerance: Tolerance) -> Vec<Self> {
+        let reach = tolerance.length + 1e-12 * height;
+        let margin = height * tolerance.length;
+        let ends = corners.iter().skip(1).chain(corners.first());
+        let edge = |(&from, &to): (&Point, &Point)| {
+            let rise = to - from;
+            let (left, right) = (from.x.min(to.x) - reach, from.x.max(to.x) + reach);
+            Self { from, rise, left, right, whole: height * rise.x.abs(), margin }
+        };
+        corners.iter().zip(ends).map(edge).filter(|edge| edge.whole > margin).collect()
+    }
+
+    /// Where the line at `x` meets the edge.
+    fn at(&self, x: f64, height: f64) -> Option<Point> {
+        if x < self.left || self.right < x {
+            return None;
+        }
+        let part = height * if self.rise.x > 0.0 { x - self.from.x } else { self.from.x - x };
+        if part < -self.margin || part > self.whole + self.margin {
+            return None;
+        }
+        let share = part.clamp(0.0, self.whole) / self.whole;
+        Some(Point::new(self.from.x + self.rise.x * share, self.from.y + self.rise.y * share))
+    }
+}
+
 /// Where a vertical line meets a convex polygon.
 struct Chord {
-    /// How many edges it meets; those parallel to it do not count.
+    /// How many edges it meets.
     num_ends: usize,
     low: Point,
     high: Point,
 }
 
 impl Chord {
-    /// The chord at `x` of the polygon of `corners`. The place on an edge is reckoned as a cut of two segments, the line
-    /// being `height` long: theirs to the last bit, which decides where [`Tolerance::EXACT`] is asked for.
-    fn at(corners: &[Point], x: f64, height: f64, tolerance: Tolerance) -> Self {
+    fn at(edges: &[Edge], x: f64, height: f64) -> Self {
         let mut chord = Self { num_ends: 0, low: Point::default(), high: Point::default() };
-        for (index, &from) in corners.iter().enumerate() {
-            let to = corners[if index + 1 < corners.len() { index + 1 } else { 0 }];
-            let run = to.x - from.x;
-            let (part, whole) = (height * (x - from.x), height * run);
-            let (part, whole) = if run < 0.0 { (-part, -whole) } else { (part, whole) };
-            let margin = height * tolerance.length;
-            if whole > margin && -margin <= part && part <= whole + margin {
-                let share = part.clamp(0.0, whole) / whole;
-                let end = Point::new(from.x + run * share, from.y + (to.y - from.y) * share);
-                if chord.num_ends == 0 || end.y < chord.low.y {
-                    chord.low = end;
-                }
-                if chord.num_ends == 0 || end.y >= chord.high.y {
-                    chord.high = end;
-                }
-                chord.num_ends += 1;
+        for end in edges.iter().filter_map(|edge| edge.at(x, height)) {
+            if chord.num_ends == 0 || end.y < chord.low.y {
+                chord.low = end;
             }
+            if chord.num_ends == 0 || end.y >= chord.high.y {
+                chord.high = end;
+            }
+            chord.num_ends += 1;
         }
         chord
     }
