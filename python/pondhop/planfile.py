@@ -51,6 +51,8 @@ class Solution:
         No plan has a shorter longest route, in length units.
     separation
         `None` where nobody measured it.
+    is_interrupted
+        Whether Ctrl-C ended the planning; the plan is the best so far.
     """
 
     problem: Problem
@@ -60,6 +62,7 @@ class Solution:
     elapsed_s: float
     lower_bound: float
     separation: Separation | None = None
+    is_interrupted: bool = False
 
     @property
     def gap_percent(self) -> float | None:

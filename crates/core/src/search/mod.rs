@@ -106,6 +106,8 @@ const MEAN_WEIGHT: f64 = 0.02;
 const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
 const MAX_HEAT: (f64, f64) = (1e-2, 1e-6);
 const TOTAL_HEAT: (f64, f64) = (3e-3, 3e-6);
+/// The same where the total is the goal: hot enough to give up whole routes.
+const TOTAL_GOAL_HEAT: (f64, f64) = (1e-1, 3e-6);
 
 /// Plans routes for `problem`, each of at least one visit, at most one per drone.
 ///
@@ -165,7 +167,8 @@ impl Search<'_> {
             self.meeting.share_best(thread, &mut chain);
         }
         chain.restart(self.total_objective(&chain.best));
-        let schedule = self.schedule(&chain, 1.0, TOTAL_HEAT);
+        let heat = if self.options.goal == Goal::Max { TOTAL_HEAT } else { TOTAL_GOAL_HEAT };
+        let schedule = self.schedule(&chain, 1.0, heat);
         chain.anneal(self.network, self.budget, &schedule, 1.0, 0.0);
         chain
     }
