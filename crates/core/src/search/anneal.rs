@@ -9,7 +9,7 @@ use super::budget::{Budget, Progress};
 use super::network::Network;
 use super::recreate::{Objective, Recreate};
 use super::ruin::Ruin;
-use super::state::{State, Touched};
+use super::state::{Difference, State, Touched};
 use crate::random::Random;
 
 /// Share of the steps that start on the longest route.
@@ -57,35 +57,32 @@ pub(super) struct Chain {
     recreate: Recreate,
     touched: Touched,
     /// What differs between `current` and `best`.
-    since_best: Touched,
+    since_best: Difference,
 }
 
 impl Chain {
-    pub fn new(state: State, objective: Objective, seed: u64) -> Self {
-        let mut random = Random::new(seed);
-        let recreate = Recreate::new(&mut random);
+    pub fn new(network: &Network, state: State, objective: Objective, seed: u64) -> Self {
         let value = objective.value(&state);
         Self {
             best: state.clone(),
             best_value: value,
             num_iterations: 0,
             objective,
-            random,
+            random: Random::new(seed),
             current: state.clone(),
             current_value: value,
             trial: state,
             ruin: Ruin::default(),
-            recreate,
+            recreate: Recreate::default(),
             touched: Touched::default(),
-            since_best: Touched::default(),
+            since_best: Difference::new(network),
         }
     }
 
     /// Goes on from the best plan, judged by `objective`.
     pub fn restart(&mut self, objective: Objective) {
-        self.current.copy_touched(&self.best, &self.since_best);
-        self.trial.copy_touched(&self.best, &self.since_best);
-        self.since_best.clear();
+        self.since_best.copy_to(&mut self.current, &self.best);
+        self.since_best.settle(&mut self.trial, &self.best);
         self.objective = objective;
         self.best_value = objective.value(&self.best);
         self.current_value = self.best_value;
@@ -133,24 +130,21 @@ impl Chain {
         );
         let value = if is_complete { self.objective.value(&self.trial) } else { f64::INFINITY };
         if value < threshold {
-            self.accept(network, value);
+            self.accept(value);
         } else {
             self.trial.copy_touched(&self.current, &self.touched);
         }
         self.touched.clear();
     }
 
-    fn accept(&mut self, network: &Network, value: f64) {
+    fn accept(&mut self, value: f64) {
         self.current.copy_touched(&self.trial, &self.touched);
         self.current_value = value;
-        self.since_best.append(&self.touched);
+        self.since_best.add(&self.touched);
         if value < self.best_value {
             self.best_value = value;
-            self.best.copy_touched(&self.trial, &self.since_best);
-            self.since_best.clear();
+            self.since_best.settle(&mut self.best, &self.trial);
             self.objective.target = self.objective.target.min(self.trial.max_route_cost());
-        } else if self.since_best.nodes.len() > 4 * network.num_visits {
-            self.since_best.remove_repetitions();
         }
     }
 

@@ -93,9 +93,9 @@ const MEETINGS: [f64; 2] = [0.5, 0.7];
 /// Share of the effort at which the work on the longest route ends.
 const MAX_END: f64 = 0.88;
 /// Starts in a race, at most.
-const MAX_STARTS: usize = 8;
+const MAX_STARTS: usize = 16;
 /// Steps per visit and start below which a race gains less than it costs.
-const RACE_STEPS_PER_VISIT: f64 = 50.0;
+const RACE_STEPS_PER_VISIT: f64 = 25.0;
 /// Steps that take as long as making a start, per visit.
 const START_STEPS_PER_VISIT: f64 = 0.3;
 /// Weight of the mean route beside the longest: without it, shortening any other route would not count.
@@ -241,7 +241,7 @@ impl Search<'_> {
             cap: f64::INFINITY,
             target: state.max_route_cost(),
         };
-        Chain::new(state, objective, self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP)))
+        Chain::new(self.network, state, objective, self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP)))
     }
 
     /// Only the total counts, while no route may outgrow the longest one, and the slack it is given.
