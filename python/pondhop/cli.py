@@ -11,20 +11,17 @@ import json
 import shlex
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
-from threading import Timer
 from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
 
 import typer
 
+from pondhop.cli_bench import bench
+from pondhop.cli_shared import Json, progress
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from pondhop.farm_features import LonLat
     from pondhop.fleet import Fleet, SamplingStyle
     from pondhop.instances import ResearchFarm
@@ -34,7 +31,6 @@ if TYPE_CHECKING:
 EXIT_BUG = 1
 EXIT_INVALID_INPUT = 2
 EXIT_INFEASIBLE = 3
-SECONDS_BEFORE_PROGRESS = 2.0
 FIGURE_NAMES = ("plan.png", "plan.svg")
 
 app = typer.Typer(
@@ -45,8 +41,8 @@ app = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.add_typer(bench, name="bench")
 
-Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults on stderr as JSON, for programs.")]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
 PlannerName = Annotated[str, typer.Option(help="Which planner: hpp.")]
 TimeLimit = Annotated[
@@ -135,7 +131,7 @@ def plan(
     if figure:
         _require_matplotlib()
     chosen_fleet = _fleet(drones, fleet, sampling)
-    with _progress("Planning", total=4 if figure else 3) as advance:
+    with progress("Planning", total=4 if figure else 3) as advance:
         read = read_farm(farm, depot=_lonlat("--depot", depot) if depot is not None else None)
         advance()
         farm_plan = planners.plan(
@@ -204,7 +200,7 @@ def solve(
 
     read = _research_farms(farms)
     solutions = []
-    with _progress("Planning", total=len(read)) as advance:
+    with progress("Planning", total=len(read)) as advance:
         for farm in read:
             problem = farm.to_problem(routes)
             solutions.append(
@@ -281,7 +277,7 @@ def plot(
         raise InvalidInput([Fault("--output", f"{output} is neither .png nor .svg", "let the name end in one of them")])
     from pondhop import plot as figures
 
-    with _progress("Drawing", total=1) as advance:
+    with progress("Drawing", total=1) as advance:
         if farms is None:
             from pondhop.planfile import read_plan_json
 
@@ -390,7 +386,7 @@ def _lonlat(option: str, text: str) -> LonLat:
 def _research_farms(path: Path) -> list[ResearchFarm]:
     from pondhop import instances
 
-    return [instances.read_tsplib(path)] if path.suffix.lower() == ".tsp" else instances.read_farms(path)
+    return instances.read(path)
 
 
 def _judgements(plans: Path, farms: Path, num_routes: int | None) -> list[Judgement]:
@@ -400,7 +396,7 @@ def _judgements(plans: Path, farms: Path, num_routes: int | None) -> list[Judgem
     read = _research_farms(farms)
     _check_same_number(read, routes_of_farms)
     judgements = []
-    with _progress("Evaluating", total=len(read)) as advance:
+    with progress("Evaluating", total=len(read)) as advance:
         for index, (farm, routes) in enumerate(zip(read, routes_of_farms, strict=True)):
             problem = farm.to_problem(num_routes or max(1, len(routes)))
             judgements.append(judge(index, problem, routes))
@@ -437,27 +433,6 @@ def _require_matplotlib() -> None:
 def _write_text(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
-
-
-@contextmanager
-def _progress(description: str, total: int) -> Iterator[Callable[[], None]]:
-    """Show a progress bar on stderr once something has taken two seconds; yield what advances it by one."""
-    if not sys.stderr.isatty():
-        yield lambda: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    progress = Progress(console=Console(stderr=True), transient=True)
-    task = progress.add_task(description, total=total)
-    start = Timer(SECONDS_BEFORE_PROGRESS, progress.start)
-    start.start()
-    try:
-        yield lambda: progress.advance(task)
-    finally:
-        start.cancel()
-        start.join()
-        progress.stop()
 
 
 def _print_invalid_input(faults: tuple[Fault, ...], as_json: bool) -> None:
