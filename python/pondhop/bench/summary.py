@@ -254,7 +254,7 @@ def _best_known_sentence(comparison: Comparison, best_known_name: str) -> str:
         text = f"that of {best_known_name}"
     else:
         listed = f"{comparison.num_listed} of {comparison.num_farms}"
-        text = f"that of {best_known_name} for {listed} farms, else the best of these runs"
+        text = f"that of {best_known_name} for {listed} pairs of farm and number of routes, else the best of these runs"
     return (
         f"Gaps are to the best plan known: {text}. Longest, total, gaps, overlap, crossings, routes used and "
         "seconds are averages; missed is the number of ponds in no route. Seconds are those of planning one farm."
