@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -121,7 +122,7 @@ def run(
     results = Results(output, is_keeping_plans=keep_plans)
     finished = results.finished
     missing = [request for request in requested if request.key not in finished]
-    with progress("Running", total=len(missing)) as advance:
+    with _broken_pipes_as_errors(), progress("Running", total=len(missing)) as advance:
         execute.execute(missing, results, num_jobs=jobs, advance=advance)
     comparison = Comparison(read_results(results.path), known)
     table_path = output / TABLE_NAME
@@ -169,6 +170,19 @@ def table(
         typer.echo(json.dumps(_rows(comparison), indent=1))
     elif output is None:
         typer.echo(page, nl=False)
+
+
+@contextmanager
+def _broken_pipes_as_errors() -> Iterator[None]:
+    """Let a write to a process that has died fail, where elsewhere a reader of ours that leaves ends the command."""
+    if not hasattr(signal, "SIGPIPE"):
+        yield
+        return
+    before = signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGPIPE, before)
 
 
 def _rows(comparison: Comparison) -> dict[str, object]:

@@ -94,7 +94,7 @@ def print_judgements(judgements: Sequence[Judgement]) -> None:
 def print_bench(comparison: Comparison) -> None:
     """Print the averages of a benchmark, a row a set and planner."""
     table = Table(box=None, header_style="bold")
-    for heading in ("Set", "Routes", "Planner", "Time limit"):
+    for heading in ("Set", "Routes", "Planner", "Limit"):
         table.add_column(heading)
     for heading in ("Longest", "Gap", "Worst", "Seconds"):
         table.add_column(heading, justify="right")

@@ -15,6 +15,7 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from pondhop.atomic import write_all
 from pondhop.bench.measure import Run
 from pondhop.errors import Fault, InvalidInput
 
@@ -48,11 +49,11 @@ class Results:
         self.plans_path = folder / PLANS_NAME
         self._is_keeping_plans = is_keeping_plans
         folder.mkdir(parents=True, exist_ok=True)
+        if not self.path.exists():
+            write_all({self.path: _csv_line(_COLUMNS)})
+        self.runs = read_results(self.path)
         for path in (self.path, self.plans_path):
             _cut_unfinished_line(path)
-        if not self.path.exists() or not self.path.stat().st_size:
-            _append(self.path, _csv_line(_COLUMNS))
-        self.runs = read_results(self.path)
 
     @property
     def finished(self) -> set[tuple[object, ...]]:
