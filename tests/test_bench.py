@@ -206,7 +206,7 @@ def begun(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
     return process
 
 
-LONG = ("--generate", "700", "--farms", "80", "--routes", "5", "--jobs", "2")
+LONG = ("--planners", "hpp", "--generate", "700", "--farms", "80", "--routes", "5", "--jobs", "2")
 
 
 def test_a_killed_benchmark_goes_on_where_it_was(tmp_path: Path) -> None:
@@ -232,7 +232,7 @@ def test_ctrl_c_ends_a_benchmark_without_a_traceback(tmp_path: Path) -> None:
 
 
 def test_another_build_is_run_again_and_shown_apart(tmp_path: Path) -> None:
-    command = ("--generate", "20", "--farms", "2", "--routes", "3", "-o", tmp_path)
+    command = ("--planners", "hpp", "--generate", "20", "--farms", "2", "--routes", "3", "-o", tmp_path)
     (row,) = bench(*command)["sets"]
     results = tmp_path / "results.csv"
     results.write_text(results.read_text().replace(row["build"], "0123456789ab"))
@@ -423,7 +423,18 @@ def test_sets_of_one_name_are_not_mixed(tmp_path: Path) -> None:
 def test_the_command_writes_rows_table_plans_and_best(tmp_path: Path) -> None:
     instances.write_farms(tmp_path / "two.json", instances.generate(20, 2, seed=9))
     out, best = tmp_path / "out", tmp_path / "best.json"
-    command = (tmp_path / "two.json", "--routes", "2,3", "--seeds", "1,2", "--time-limits", "0.01,0.1", "--keep-plans")
+    command = (
+        tmp_path / "two.json",
+        "--planners",
+        "hpp",
+        "--routes",
+        "2,3",
+        "--seeds",
+        "1,2",
+        "--time-limits",
+        "0.01,0.1",
+        "--keep-plans",
+    )
     answer = bench(*command, "--update-best", best, "-o", out)
     assert answer["num_new_runs"] == answer["num_runs"] == 2 * 2 * 2 * 2
     assert [(row["num_routes"], row["time_limit"]) for row in answer["sets"]] == [

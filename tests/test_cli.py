@@ -81,8 +81,8 @@ def test_solve_without_output_prints_the_same_json(run: Run, farms: Path, tmp_pa
     def plans(text: str) -> list[dict[str, Any]]:
         return [record | {"elapsed_s": None} for record in json.loads(text)]
 
-    printed = run("solve", farms, "--routes", 4)
-    written = run("solve", farms, "--routes", 4, "--json", "-o", tmp_path / "plans.json")
+    printed = run("solve", farms, "--routes", 4, "--iterations", 300)
+    written = run("solve", farms, "--routes", 4, "--iterations", 300, "--json", "-o", tmp_path / "plans.json")
     assert printed.code == written.code == 0
     assert printed.err == written.err == ""
     assert plans(printed.out) == plans(written.out) == plans((tmp_path / "plans.json").read_text())

@@ -52,8 +52,8 @@ def run(
         typer.Option(metavar="N,N,...", help="Routes allowed; else each number that --best-known has for a farm."),
     ] = None,
     planners: Annotated[
-        str, typer.Option(metavar="NAME,NAME,...", help="Planners, with options as in NAME:threads=2.")
-    ] = "hpp",
+        str, typer.Option(metavar="NAME,NAME,...", help="Planners, with options as in search:threads=2.")
+    ] = "search",
     time_limits: Annotated[
         str | None, typer.Option(metavar="S,S,...", help="Wall seconds for a farm; else as the planner likes.")
     ] = None,
@@ -77,8 +77,8 @@ def run(
 ) -> None:
     """Run planners on farms and write results.csv, a row a run, and results.md, averages with gaps.
 
-    - `pondhop bench run --generate 50,100,700 --farms 20 --routes 5 --planners hpp -o bench`
-    - `pondhop bench run farms50.json --routes 3,5 --planners hpp --seeds 1,2,3 --jobs 2 -o bench`
+    - `pondhop bench run --generate 50,100,700 --farms 20 --routes 5 --planners search,hpp --time-limits 0.1 -o bench`
+    - `pondhop bench run farms50.json --routes 3,5 --planners search:slack_percent=1 --seeds 1,2,3 --jobs 2 -o bench`
     - `pondhop bench run mtsp/*.tsp --best-known best.csv --seconds-per-node 0.1 -o bench`
 
     Every farm is planned with every number of routes, planner, time limit and seed. What is in results.csv already is
