@@ -11,15 +11,14 @@ import json
 import shlex
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
-from threading import Timer
-from typing import TYPE_CHECKING, Annotated, Literal, NoReturn, Protocol
+from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
 
 import typer
 
+from pondhop.cli_bench import bench
+from pondhop.cli_shared import Advance, Json, progress
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:
@@ -34,7 +33,6 @@ EXIT_BUG = 1
 EXIT_INVALID_INPUT = 2
 EXIT_INFEASIBLE = 3
 EXIT_INTERRUPTED = 130
-SECONDS_BEFORE_PROGRESS = 2.0
 FIGURE_NAMES = ("plan.png", "plan.svg")
 
 app = typer.Typer(
@@ -45,8 +43,8 @@ app = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.add_typer(bench, name="bench")
 
-Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults on stderr as JSON, for programs.")]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
 PlannerName = Annotated[str, typer.Option(help="Which planner: search, hpp.")]
 TimeLimit = Annotated[
@@ -150,7 +148,7 @@ def plan(
     if figure:
         _require_matplotlib()
     chosen_fleet = _fleet(drones, fleet, sampling)
-    with _progress("Planning", total=4 if figure else 3) as advance:
+    with progress("Planning", total=4 if figure else 3) as advance:
         read = read_farm(farm, depot=_lonlat("--depot", depot) if depot is not None else None)
         advance()
         farm_plan = planners.plan(
@@ -240,7 +238,7 @@ def solve(
     if starts is not None:
         _check_same_number(read, starts)
     solutions: list[Solution] = []
-    with _progress("Planning", total=len(read)) as advance:
+    with progress("Planning", total=len(read)) as advance:
         for index, farm in enumerate(read):
             problem = farm.to_problem(routes)
             solution = planners.solve(
@@ -332,7 +330,7 @@ def plot(
         raise InvalidInput([Fault("--output", f"{output} is neither .png nor .svg", "let the name end in one of them")])
     from pondhop import plot as figures
 
-    with _progress("Drawing", total=1) as advance:
+    with progress("Drawing", total=1) as advance:
         if farms is None:
             from pondhop.planfile import read_plan_json
 
@@ -441,7 +439,7 @@ def _lonlat(option: str, text: str) -> LonLat:
 def _research_farms(path: Path) -> list[ResearchFarm]:
     from pondhop import instances
 
-    return [instances.read_tsplib(path)] if path.suffix.lower() == ".tsp" else instances.read_farms(path)
+    return instances.read(path)
 
 
 def _judgements(plans: Path, farms: Path, num_routes: int | None) -> list[Judgement]:
@@ -451,7 +449,7 @@ def _judgements(plans: Path, farms: Path, num_routes: int | None) -> list[Judgem
     read = _research_farms(farms)
     _check_same_number(read, routes_of_farms)
     judgements = []
-    with _progress("Evaluating", total=len(read)) as advance:
+    with progress("Evaluating", total=len(read)) as advance:
         for index, (farm, routes) in enumerate(zip(read, routes_of_farms, strict=True)):
             problem = farm.to_problem(num_routes or max(1, len(routes)))
             judgements.append(judge(index, problem, routes))
@@ -490,45 +488,7 @@ def _write_text(path: Path, text: str) -> None:
     path.write_text(text)
 
 
-class _Advance(Protocol):
-    """Advances a progress bar to the end of the current step, or to a share of it."""
-
-    def __call__(self, share: float = 1.0, note: str = "") -> None: ...
-
-
-def _advance_nothing(share: float = 1.0, note: str = "") -> None:
-    """Stand in where nobody watches."""
-
-
-@contextmanager
-def _progress(description: str, total: int) -> Iterator[_Advance]:
-    """Show a progress bar on stderr once something has taken two seconds; yield what advances it by one."""
-    if not sys.stderr.isatty():
-        yield _advance_nothing
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    progress = Progress(console=Console(stderr=True), transient=True)
-    task = progress.add_task(description, total=total)
-    start = Timer(SECONDS_BEFORE_PROGRESS, progress.start)
-    num_done = 0
-
-    def advance(share: float = 1.0, note: str = "") -> None:
-        nonlocal num_done
-        progress.update(task, completed=num_done + share, description=f"{description} {note}".rstrip())
-        num_done += share >= 1.0
-
-    start.start()
-    try:
-        yield advance
-    finally:
-        start.cancel()
-        start.join()
-        progress.stop()
-
-
-def _search_progress(advance: _Advance) -> ProgressFunction:
+def _search_progress(advance: Advance) -> ProgressFunction:
     """Show how far a search is: its best longest route, in seconds or the units of a research farm."""
 
     def report(max_route_cost: float, num_iterations: int, share: float) -> None:

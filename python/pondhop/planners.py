@@ -187,13 +187,16 @@ def solve(
     chosen = _chosen(planner, faults)
     if chosen is None or faults:
         raise InvalidInput(faults)
+    cpu_start_s = time.process_time()
     planned = chosen.run(problem, effort)
+    cpu_s = time.process_time() - cpu_start_s
     return Solution(
         problem=problem,
         plan=_core.evaluate(problem, planned.routes),
         planner=chosen.name,
         seed=seed,
         elapsed_s=planned.elapsed_s,
+        cpu_s=cpu_s,
         lower_bound=_core.lower_bound(problem),
         is_interrupted=planned.is_interrupted,
     )
