@@ -33,7 +33,7 @@ use crate::kmeans::{Clustering, kmeans};
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::sweep::{ClosedPolygon, Frame, Tolerance, sweep_path};
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_PI_4, PI};
 
 /// Ponds that make a polygon; a cluster with fewer takes ponds of its neighbours (paper, section 3).
 const MIN_CLUSTER_SIZE: usize = 3;
@@ -109,25 +109,33 @@ pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
 /// have a neighbour next to them.
 fn pitch(ponds: &[Point]) -> f64 {
     let num_sampled = ponds.len().min(MAX_PITCH_SAMPLE);
+    let mut sorted = ponds.to_vec();
+    sorted.sort_unstable_by(|one, other| one.x.total_cmp(&other.x));
     let mut squares: Vec<f64> =
-        (0..num_sampled).map(|sample| nearest_square(ponds, ponds[sample * ponds.len() / num_sampled])).collect();
+        (0..num_sampled).map(|sample| nearest_square(&sorted, ponds[sample * ponds.len() / num_sampled])).collect();
     let (_, median, _) = squares.select_nth_unstable_by(num_sampled / 2, f64::total_cmp);
     if median.is_finite() { median.sqrt() } else { 0.0 }
 }
 
-/// The squared distance to the nearest pond in another place; infinite if there is none.
-fn nearest_square(ponds: &[Point], place: Point) -> f64 {
-    // Four minima side by side, so that no comparison waits for the one before.
-    let mut nearest = [f64::INFINITY; 4];
-    for group in ponds.chunks(nearest.len()) {
-        for (nearest, pond) in nearest.iter_mut().zip(group) {
-            let offset = *pond - place;
-            let square = dot(offset, offset);
-            let square = if square > 0.0 { square } else { f64::INFINITY };
-            *nearest = if square < *nearest { square } else { *nearest };
+/// The squared distance to the nearest pond in another place; infinite if there is none. `sorted` is so by x.
+fn nearest_square(sorted: &[Point], place: Point) -> f64 {
+    let (west, east) = sorted.split_at(sorted.partition_point(|pond| pond.x < place.x));
+    let mut nearest = f64::INFINITY;
+    let mut is_farther_on = |pond: &Point| {
+        let offset = *pond - place;
+        if offset.x * offset.x >= nearest {
+            return true;
         }
-    }
-    nearest.into_iter().fold(f64::INFINITY, f64::min)
+        let square = dot(offset, offset);
+        if 0.0 < square && square < nearest {
+            nearest = square;
+        }
+        false
+    };
+    // Both stop where the first coordinate alone is too far away.
+    let _ = east.iter().any(&mut is_farther_on);
+    let _ = west.iter().rev().any(&mut is_farther_on);
+    nearest
 }
 
 /// Step 1: the cluster of each pond, by k-means on the ponds alone (paper, section 3: "clustering is accomplished using
@@ -211,27 +219,51 @@ fn pond_to_take(
 fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance, limit: f64) -> f64 {
     let east = Point::new(1.0, 0.0);
     let (mut position, mut direction) = (depot, east);
-    let (mut turned, mut length) = (0.0, 0.0);
+    let (mut turned, mut length) = (Turned::default(), 0.0);
     let limit_length = limit * SPEED * (1.0 + 1e-12);
     for corner in corners.chain([depot]) {
         let leg = corner - position;
         if leg.x.abs() > tolerance.length && leg.y.abs() > tolerance.length {
-            turned += turn(direction, leg);
-            length += dot(leg, leg).sqrt();
-            if turned * (SPEED / TURN_RATE) + length > limit_length {
+            let leg_length = dot(leg, leg).sqrt();
+            let heading = Point::new(leg.x / leg_length, leg.y / leg_length);
+            turned.add(direction, heading);
+            length += leg_length;
+            if turned.half_turns * (PI * SPEED / TURN_RATE) + length > limit_length {
                 return f64::INFINITY;
             }
-            (position, direction) = (corner, leg);
+            (position, direction) = (corner, heading);
         }
     }
-    (turned + turn(direction, east)) / TURN_RATE + length / SPEED
+    turned.add(direction, east);
+    turned.angle() / TURN_RATE + length / SPEED
 }
 
-/// The angle between two directions, in [0, π].
-fn turn(from: Point, to: Point) -> f64 {
-    let (sine, cosine) = (cross(Point::default(), from, to).abs(), dot(from, to));
-    // Nearly all turns of a sweep are right angles.
-    if cosine.abs() <= 1e-9 * sine { FRAC_PI_2 } else { sine.atan2(cosine) }
+/// A sum of angles in [0, π], without a trigonometric function for each: whole half turns, and the direction of the product
+/// of unit complex numbers in the upper half plane.
+struct Turned {
+    half_turns: f64,
+    rest: Point,
+}
+
+impl Default for Turned {
+    fn default() -> Self {
+        Self { half_turns: 0.0, rest: Point::new(1.0, 0.0) }
+    }
+}
+
+impl Turned {
+    /// Adds the angle between two directions of unit length.
+    fn add(&mut self, from: Point, to: Point) {
+        let (cosine, sine) = (dot(from, to), cross(Point::default(), from, to).abs());
+        let (x, y) = (self.rest.x * cosine - self.rest.y * sine, self.rest.x * sine + self.rest.y * cosine);
+        let is_beyond = y < 0.0 || (y == 0.0 && x < 0.0);
+        self.half_turns += f64::from(u8::from(is_beyond));
+        self.rest = if is_beyond { Point::new(-x, -y) } else { Point::new(x, y) };
+    }
+
+    fn angle(&self) -> f64 {
+        self.half_turns * PI + self.rest.y.atan2(self.rest.x)
+    }
 }
 
 /// A back-and-forth path and the frame in which its legs are vertical and horizontal.
@@ -292,9 +324,9 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
 /// order; along the first axis, by the second coordinate too. Ponds that no leg takes come last, in input order.
 #[must_use]
 pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
-    let mut order = vec![0; ponds.len()];
-    let mut num_ordered = 0;
-    let mut remaining: Vec<(usize, Point)> = ponds.iter().map(|&pond| path.frame.enter(pond)).enumerate().collect();
+    let mut order = Vec::with_capacity(ponds.len());
+    let mut strips = Strips::new(ponds.iter().map(|&pond| path.frame.enter(pond)).collect(), pitch);
+    let mut passed = Vec::new();
     let (margin_along, margin_across) =
         (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
     for leg in path.corners.windows(2) {
@@ -306,42 +338,114 @@ pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tol
         let is_vertical = (end.y - start.y).abs() > (end.x - start.x).abs();
         let (margin_x, margin_y) =
             if is_vertical { (margin_across, margin_along) } else { (margin_along, margin_across) };
-        let (left, right) = (start.x.min(end.x) - margin_x, start.x.max(end.x) + margin_x);
-        let (bottom, top) = (start.y.min(end.y) - margin_y, start.y.max(end.y) + margin_y);
-        let first = num_ordered;
-        let mut num_kept = 0;
-        // Both are written and one is counted: which of the two it is cannot be predicted.
-        for place in 0..remaining.len() {
-            let (index, pond) = remaining[place];
-            let is_passed = (left <= pond.x) & (pond.x <= right) & (bottom <= pond.y) & (pond.y <= top);
-            order[num_ordered] = index;
-            num_ordered += usize::from(is_passed);
-            remaining[num_kept] = (index, pond);
-            num_kept += usize::from(!is_passed);
-        }
-        remaining.truncate(num_kept);
-        sort_along(direction, ponds, &mut order[first..num_ordered], tolerance);
+        let low = Point::new(start.x.min(end.x) - margin_x, start.y.min(end.y) - margin_y);
+        let high = Point::new(start.x.max(end.x) + margin_x, start.y.max(end.y) + margin_y);
+        passed.clear();
+        strips.take(low, high, &mut passed);
+        sort_along(direction, ponds, &mut passed, tolerance);
+        order.extend(passed.iter().map(|&(.., pond)| pond));
     }
-    for (place, (index, _)) in order[num_ordered..].iter_mut().zip(remaining) {
-        *place = index;
-    }
+    order.extend(strips.into_rest());
     order
 }
 
-/// Sorts indices of ponds along the coordinate axis nearest to a direction; of two equally near, the counter-clockwise one.
-fn sort_along(direction: Point, ponds: &[Point], indices: &mut [usize], tolerance: Tolerance) {
-    let by_x = |a: usize, b: usize| ponds[a].x.total_cmp(&ponds[b].x);
-    let by_y = |a: usize, b: usize| ponds[a].y.total_cmp(&ponds[b].y);
+/// Ponds by the strip a pitch wide that they lie in, so that a leg looks at those near it only.
+struct Strips {
+    left: f64,
+    strips_per_length: f64,
+    /// In the order of the strips, and within a strip in that of the input.
+    ponds: Vec<(Point, usize)>,
+    /// Where each strip begins and ends in `ponds`.
+    ranges: Vec<(usize, usize)>,
+}
+
+impl Strips {
+    fn new(ponds: Vec<Point>, pitch: f64) -> Self {
+        let (left, right) = ponds
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(left, right), pond| (left.min(pond.x), right.max(pond.x)));
+        let width = pitch.max((right - left) / ponds.len() as f64);
+        let strips_per_length = if width > 0.0 { 1.0 / width } else { 0.0 };
+        let num_strips = ((right - left) * strips_per_length) as usize + 1;
+        let mut strips = Self {
+            left,
+            strips_per_length,
+            ponds: vec![(Point::default(), 0); ponds.len()],
+            ranges: vec![(0, 0); num_strips],
+        };
+        for pond in &ponds {
+            let strip = strips.strip(pond.x);
+            strips.ranges[strip].1 += 1;
+        }
+        let mut begin = 0;
+        for range in &mut strips.ranges {
+            let end = begin + range.1;
+            *range = (begin, begin);
+            begin = end;
+        }
+        for (index, &pond) in ponds.iter().enumerate() {
+            let strip = strips.strip(pond.x);
+            strips.ponds[strips.ranges[strip].1] = (pond, index);
+            strips.ranges[strip].1 += 1;
+        }
+        strips
+    }
+
+    fn strip(&self, x: f64) -> usize {
+        (((x - self.left) * self.strips_per_length) as usize).min(self.ranges.len() - 1)
+    }
+
+    /// Moves the ponds in an axis-parallel box to `passed`.
+    fn take(&mut self, low: Point, high: Point, passed: &mut Vec<(f64, f64, usize)>) {
+        for strip in self.strip(low.x)..=self.strip(high.x) {
+            let (begin, end) = self.ranges[strip];
+            let mut kept = begin;
+            for place in begin..end {
+                let (pond, index) = self.ponds[place];
+                if (low.x <= pond.x) & (pond.x <= high.x) & (low.y <= pond.y) & (pond.y <= high.y) {
+                    passed.push((0.0, 0.0, index));
+                } else {
+                    self.ponds[kept] = (pond, index);
+                    kept += 1;
+                }
+            }
+            self.ranges[strip].1 = kept;
+        }
+    }
+
+    /// The ponds that were not taken, in input order.
+    fn into_rest(self) -> Vec<usize> {
+        let mut rest: Vec<usize> =
+            self.ranges.iter().flat_map(|&(begin, end)| &self.ponds[begin..end]).map(|&(_, index)| index).collect();
+        rest.sort_unstable();
+        rest
+    }
+}
+
+/// Sorts ponds along the coordinate axis nearest to a direction; of two equally near, the counter-clockwise one.
+///
+/// The two keys of each pond are overwritten.
+fn sort_along(direction: Point, ponds: &[Point], passed: &mut [(f64, f64, usize)], tolerance: Tolerance) {
     let snap = |value: f64| if value.abs() <= tolerance.length { 0.0 } else { value };
     // Left of the diagonal that leads up, and above the one that leads down.
     let (left, above) = (snap(direction.y - direction.x), snap(direction.y + direction.x));
-    if left < 0.0 && above >= 0.0 {
-        indices.sort_by(|&a, &b| by_x(a, b).then(by_y(a, b)));
+    let key: fn(Point) -> (f64, f64) = if left < 0.0 && above >= 0.0 {
+        |pond| (pond.x, pond.y)
     } else if left >= 0.0 && above > 0.0 {
-        indices.sort_by(|&a, &b| by_y(a, b));
+        |pond| (pond.y, 0.0)
     } else if left > 0.0 {
-        indices.sort_by(|&a, &b| by_x(b, a));
+        |pond| (-pond.x, 0.0)
     } else {
-        indices.sort_by(|&a, &b| by_y(b, a));
+        |pond| (-pond.y, 0.0)
+    };
+    for (first, second, pond) in passed.iter_mut() {
+        (*first, *second) = key(ponds[*pond]);
     }
+    // Farms often list ponds column by column: what is flown down is then sorted already.
+    if left > 0.0 && above <= 0.0 || left <= 0.0 && above < 0.0 {
+        passed.reverse();
+    }
+    passed.sort_unstable_by(|one, other| {
+        one.0.total_cmp(&other.0).then_with(|| one.1.total_cmp(&other.1)).then_with(|| one.2.cmp(&other.2))
+    });
 }

@@ -212,15 +212,13 @@ const MAX_NUM_LINES: f64 = 4096.0;
 /// rounding decides whether it is. O(corners lines).
 pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tolerance, path: &mut Vec<Point>) {
     path.clear();
-    let bound = |value: fn(&Point) -> f64, choose: fn(f64, f64) -> f64| corners.iter().map(value).reduce(choose);
-    let (Some(left), Some(right), Some(bottom), Some(top)) = (
-        bound(|corner| corner.x, f64::min),
-        bound(|corner| corner.x, f64::max),
-        bound(|corner| corner.y, f64::min),
-        bound(|corner| corner.y, f64::max),
-    ) else {
-        return;
-    };
+    let Some(&first) = corners.first() else { return };
+    let (mut low, mut high) = (first, first);
+    for corner in corners {
+        low = Point::new(low.x.min(corner.x), low.y.min(corner.y));
+        high = Point::new(high.x.max(corner.x), high.y.max(corner.y));
+    }
+    let (left, right, bottom, top) = (low.x, high.x, low.y, high.y);
     let pitch = pitch.max((right - left) / MAX_NUM_LINES);
     let height = (top + 1.0) - (bottom - 1.0);
     let edges = Edge::of_polygon(corners, height, tolerance);
@@ -279,7 +277,9 @@ impl Edge {
             let (left, right) = (from.x.min(to.x) - reach, from.x.max(to.x) + reach);
             Self { from, rise, left, right, whole: height * rise.x.abs(), margin }
         };
-        corners.iter().zip(ends).map(edge).filter(|edge| edge.whole > margin).collect()
+        let mut edges = Vec::with_capacity(corners.len());
+        edges.extend(corners.iter().zip(ends).map(edge).filter(|edge| edge.whole > margin));
+        edges
     }
 
     /// Where the line at `x` meets the edge.
