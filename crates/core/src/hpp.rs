@@ -46,6 +46,11 @@ const TURN_RATE: f64 = FRAC_PI_4;
 /// Ponds whose nearest neighbours the pitch is taken from.
 const MAX_PITCH_SAMPLE: usize = 32;
 
+/// Corners of a sweep that there is room for from the start.
+const MAX_USUAL_CORNERS: usize = 32;
+/// Ponds that a strip holds on average at least: with fewer, looking at the strips costs more than it saves.
+const MIN_PONDS_PER_STRIP: usize = 8;
+
 /// What HPP did, for figures and for study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HppPlan {
@@ -255,6 +260,11 @@ impl Turned {
     /// Adds the angle between two directions of unit length.
     fn add(&mut self, from: Point, to: Point) {
         let (cosine, sine) = (dot(from, to), cross(Point::default(), from, to).abs());
+        // Nearly all turns of a sweep are right angles.
+        if cosine.abs() <= 1e-9 {
+            self.half_turns += 0.5;
+            return;
+        }
         let (x, y) = (self.rest.x * cosine - self.rest.y * sine, self.rest.x * sine + self.rest.y * cosine);
         let is_beyond = y < 0.0 || (y == 0.0 && x < 0.0);
         self.half_turns += f64::from(u8::from(is_beyond));
@@ -286,7 +296,8 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
     let mut best = SweepPath { frame: Frame::UNTURNED, corners: hull.to_vec() };
     let mut best_duration = f64::INFINITY;
     let mut tried = Vec::with_capacity(pairs.len());
-    let (mut local, mut path, mut corners) = (Vec::new(), Vec::new(), Vec::new());
+    let mut local = Vec::with_capacity(hull.len());
+    let (mut path, mut corners) = (Vec::with_capacity(MAX_USUAL_CORNERS), Vec::with_capacity(MAX_USUAL_CORNERS));
     for pair in pairs {
         let sweep = polygon.sweep_of_pair(pair);
         if tried.contains(&sweep) {
@@ -326,7 +337,7 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
 pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
     let mut order = Vec::with_capacity(ponds.len());
     let mut strips = Strips::new(ponds.iter().map(|&pond| path.frame.enter(pond)).collect(), pitch);
-    let mut passed = Vec::new();
+    let mut passed = Vec::with_capacity(ponds.len());
     let (margin_along, margin_across) =
         (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
     for leg in path.corners.windows(2) {
@@ -364,7 +375,8 @@ impl Strips {
         let (left, right) = ponds
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(left, right), pond| (left.min(pond.x), right.max(pond.x)));
-        let width = pitch.max((right - left) / ponds.len() as f64);
+        let max_num_strips = ponds.len().div_ceil(MIN_PONDS_PER_STRIP);
+        let width = pitch.max((right - left) / max_num_strips as f64);
         let strips_per_length = if width > 0.0 { 1.0 / width } else { 0.0 };
         let num_strips = ((right - left) * strips_per_length) as usize + 1;
         let mut strips = Self {

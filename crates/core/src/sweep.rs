@@ -4,7 +4,7 @@
 //! Marciano-Melchor, Valentin and Herrera-Lozada, Coverage path planning for 2D convex regions, J. Intell. Robot. Syst. 2020
 //! (doi 10.1007/s10846-019-01024-y): the lines of a best path run along an edge of the polygon, which rotating calipers
 //! find (Shamos, Computational Geometry, PhD thesis, Yale 1978).
-//! Complexity: O(h) for all pairs of a polygon of h corners, O(h l) for a path of l lines.
+//! Complexity: O(h) for all pairs of a polygon of h corners, O(h + l) for a path of l lines.
 //! Changed: where the authors' code compares numbers that differ only by rounding, a [`Tolerance`] says what is equal;
 //! [`Tolerance::EXACT`] is their arithmetic to the last bit.
 
@@ -71,8 +71,10 @@ impl ClosedPolygon {
     /// The polygon of at least one corner; `corners` come counter-clockwise and without the repetition of the first.
     #[must_use]
     pub fn new(corners: &[Point], tolerance: Tolerance) -> Self {
-        let rows: Vec<Point> = corners.iter().chain(corners.first()).copied().collect();
-        let mut headings: Vec<f64> = rows.windows(2).map(|edge| heading(edge[1] - edge[0], tolerance)).collect();
+        let mut rows = Vec::with_capacity(corners.len() + 1);
+        rows.extend(corners.iter().chain(corners.first()));
+        let mut headings = Vec::with_capacity(rows.len());
+        headings.extend(rows.windows(2).map(|edge| heading(edge[1] - edge[0], tolerance)));
         headings.push(0.0);
         Self { rows, headings, tolerance }
     }
@@ -102,7 +104,8 @@ impl ClosedPolygon {
         while self.angle(last, j) < PI - self.tolerance.angle {
             j = self.next(j);
         }
-        let mut pairs = vec![(i, j)];
+        let mut pairs = Vec::with_capacity(2 * num_rows);
+        pairs.push((i, j));
         while j < num_rows {
             let missing = PI - self.angle(i, j);
             if missing > self.tolerance.angle {
@@ -209,7 +212,7 @@ const MAX_NUM_LINES: f64 = 4096.0;
 /// then one every `pitch` while it is less than half a pitch beyond the right end; a line that misses the polygon takes the
 /// chord half a pitch before it. Of two ends that follow each other, the one that lies inside is pulled to the other's
 /// height (Vasquez-Gomez et al.). A side within the tolerance of a line is part of it; with [`Tolerance::EXACT`],
-/// rounding decides whether it is. O(corners lines).
+/// rounding decides whether it is. O(corners + lines).
 pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tolerance, path: &mut Vec<Point>) {
     path.clear();
     let Some(&first) = corners.first() else { return };
@@ -221,13 +224,15 @@ pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tol
     let (left, right, bottom, top) = (low.x, high.x, low.y, high.y);
     let pitch = pitch.max((right - left) / MAX_NUM_LINES);
     let height = (top + 1.0) - (bottom - 1.0);
-    let edges = Edge::of_polygon(corners, height, tolerance);
+    let mut sides = Sides::new(corners, height, tolerance);
     let mut is_up = starts_up;
     let mut x = left;
     while x < right + pitch / 2.0 - tolerance.length {
-        let mut line = Chord::at(&edges, x, height);
+        let passed = sides.num_passed;
+        let mut line = sides.chord(x);
         if line.num_ends == 0 {
-            line = Chord::at(&edges, x - pitch / 2.0, height);
+            sides.num_passed = passed;
+            line = sides.chord(x - pitch / 2.0);
             line.low.x += pitch / 2.0;
             line.high.x += pitch / 2.0;
         } else if line.num_ends == 1 {
@@ -267,32 +272,62 @@ struct Edge {
 }
 
 impl Edge {
-    /// The edges that are not vertical, in the order of the corners they leave.
-    fn of_polygon(corners: &[Point], height: f64, tolerance: Tolerance) -> Vec<Self> {
-        let reach = tolerance.length + 1e-12 * height;
-        let margin = height * tolerance.length;
-        let ends = corners.iter().skip(1).chain(corners.first());
-        let edge = |(&from, &to): (&Point, &Point)| {
-            let rise = to - from;
-            let (left, right) = (from.x.min(to.x) - reach, from.x.max(to.x) + reach);
-            Self { from, rise, left, right, whole: height * rise.x.abs(), margin }
-        };
-        let mut edges = Vec::with_capacity(corners.len());
-        edges.extend(corners.iter().zip(ends).map(edge).filter(|edge| edge.whole > margin));
-        edges
-    }
-
     /// Where the line at `x` meets the edge.
     fn at(&self, x: f64, height: f64) -> Option<Point> {
-        if x < self.left || self.right < x {
-            return None;
-        }
         let part = height * if self.rise.x > 0.0 { x - self.from.x } else { self.from.x - x };
         if part < -self.margin || part > self.whole + self.margin {
             return None;
         }
         let share = part.clamp(0.0, self.whole) / self.whole;
         Some(Point::new(self.from.x + self.rise.x * share, self.from.y + self.rise.y * share))
+    }
+}
+
+/// The edges of a convex polygon below and above it, each from left to right; without the vertical ones.
+struct Sides {
+    height: f64,
+    edges: [Vec<Edge>; 2],
+    /// How many edges of each side lie to the left of the last line.
+    num_passed: [usize; 2],
+}
+
+impl Sides {
+    /// The sides of the polygon of these corners, which come counter-clockwise.
+    fn new(corners: &[Point], height: f64, tolerance: Tolerance) -> Self {
+        let reach = tolerance.length + 1e-12 * height;
+        let margin = height * tolerance.length;
+        let mut edges = [Vec::with_capacity(corners.len()), Vec::with_capacity(corners.len())];
+        let leftmost =
+            (0..corners.len()).min_by(|&one, &other| corners[one].x.total_cmp(&corners[other].x)).unwrap_or(0);
+        let (end, start) = corners.split_at(leftmost);
+        let from = start.iter().chain(end);
+        let to = from.clone().skip(1).chain(start.first());
+        for (&from, &to) in from.zip(to) {
+            let rise = to - from;
+            let (left, right) = (from.x.min(to.x) - reach, from.x.max(to.x) + reach);
+            let edge = Edge { from, rise, left, right, whole: height * rise.x.abs(), margin };
+            if edge.whole > margin {
+                edges[usize::from(rise.x < 0.0)].push(edge);
+            }
+        }
+        edges[1].reverse();
+        Self { height, edges, num_passed: [0, 0] }
+    }
+
+    /// Where the line at `x` meets the polygon; `x` is not left of the lines before.
+    fn chord(&mut self, x: f64) -> Chord {
+        let mut chord = Chord { num_ends: 0, low: Point::default(), high: Point::default() };
+        for (edges, num_passed) in self.edges.iter().zip(&mut self.num_passed) {
+            while edges.get(*num_passed).is_some_and(|edge| edge.right < x) {
+                *num_passed += 1;
+            }
+            for edge in edges[*num_passed..].iter().take_while(|edge| edge.left <= x) {
+                if let Some(end) = edge.at(x, self.height) {
+                    chord.add(end);
+                }
+            }
+        }
+        chord
     }
 }
 
@@ -305,17 +340,13 @@ struct Chord {
 }
 
 impl Chord {
-    fn at(edges: &[Edge], x: f64, height: f64) -> Self {
-        let mut chord = Self { num_ends: 0, low: Point::default(), high: Point::default() };
-        for end in edges.iter().filter_map(|edge| edge.at(x, height)) {
-            if chord.num_ends == 0 || end.y < chord.low.y {
-                chord.low = end;
-            }
-            if chord.num_ends == 0 || end.y >= chord.high.y {
-                chord.high = end;
-            }
-            chord.num_ends += 1;
+    fn add(&mut self, end: Point) {
+        if self.num_ends == 0 || end.y < self.low.y {
+            self.low = end;
         }
-        chord
+        if self.num_ends == 0 || end.y >= self.high.y {
+            self.high = end;
+        }
+        self.num_ends += 1;
     }
 }
