@@ -82,6 +82,17 @@ pub fn convex_hull_within(points: &[Point], tolerance: f64) -> Vec<usize> {
         (points[one].x - points[other].x).abs() <= tolerance && (points[one].y - points[other].y).abs() <= tolerance
     };
     order.dedup_by(|later, earlier| is_same_place(*later, *earlier));
+    // In a column of a grid only the lowest and the highest point can be corners.
+    let mut num_kept = 0;
+    for place in 0..order.len() {
+        let x = points[order[place]].x;
+        let is_between = num_kept > 0
+            && points[order[num_kept - 1]].x == x
+            && order.get(place + 1).is_some_and(|&next| points[next].x == x);
+        order[num_kept] = order[place];
+        num_kept += usize::from(!is_between);
+    }
+    order.truncate(num_kept);
     let mut hull = Vec::with_capacity(order.len() + 1);
     append_half_hull(points, order.iter().copied(), tolerance, &mut hull);
     if order.len() > 1 {

@@ -9,7 +9,7 @@
 //! 1. `cluster`: k-means; a cluster that is no polygon is repaired.
 //! 2. [`convex_hull_within`] of each cluster.
 //! 3. [`ClosedPolygon::caliper_pairs`]: pairs of hull corners.
-//! 4. [`ClosedPolygon::sweep_of_pair`], [`sweep_path`]: a back-and-forth path for each pair.
+//! 4. [`ClosedPolygon::sweep_of_pair`], [`Sweeper::path`]: a back-and-forth path for each pair.
 //! 5. [`cheapest_path`]: the cheapest of them, from the depot and back.
 //! 6. [`order_along`]: the ponds in the order in which that path passes them.
 //!
@@ -32,7 +32,7 @@ use crate::geometry::{Point, convex_hull_within, cross, dot, extent};
 use crate::kmeans::{Clustering, kmeans};
 use crate::problem::Problem;
 use crate::random::Random;
-use crate::sweep::{ClosedPolygon, Frame, Tolerance, sweep_path};
+use crate::sweep::{ClosedPolygon, Frame, Sweeper, Tolerance};
 use std::f64::consts::{FRAC_PI_4, PI};
 
 /// Ponds that make a polygon; a cluster with fewer takes ponds of its neighbours (paper, section 3).
@@ -49,7 +49,7 @@ const MAX_PITCH_SAMPLE: usize = 32;
 /// Corners of a sweep that there is room for from the start.
 const MAX_USUAL_CORNERS: usize = 32;
 /// Ponds that a strip holds on average at least: with fewer, looking at the strips costs more than it saves.
-const MIN_PONDS_PER_STRIP: usize = 8;
+const MIN_PONDS_PER_STRIP: usize = 12;
 
 /// What HPP did, for figures and for study.
 #[derive(Clone, Debug, PartialEq)]
@@ -296,6 +296,7 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
     let mut best = SweepPath { frame: Frame::UNTURNED, corners: hull.to_vec() };
     let mut best_duration = f64::INFINITY;
     let mut tried = Vec::with_capacity(pairs.len());
+    let mut sweeper = Sweeper::new(hull.len(), pitch, tolerance);
     let mut local = Vec::with_capacity(hull.len());
     let (mut path, mut corners) = (Vec::with_capacity(MAX_USUAL_CORNERS), Vec::with_capacity(MAX_USUAL_CORNERS));
     for pair in pairs {
@@ -307,7 +308,7 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
         let frame = polygon.frame(sweep);
         local.clear();
         local.extend(hull.iter().map(|&corner| frame.enter(corner)));
-        sweep_path(&local, pitch, sweep.starts_up, tolerance, &mut path);
+        sweeper.path(&local, sweep.starts_up, &mut path);
         corners.clear();
         corners.extend(path.iter().map(|&corner| frame.leave(corner)));
         let forward = flight_duration(depot, corners.iter().copied(), tolerance, best_duration);
@@ -336,7 +337,7 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
 #[must_use]
 pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
     let mut order = Vec::with_capacity(ponds.len());
-    let mut strips = Strips::new(ponds.iter().map(|&pond| path.frame.enter(pond)).collect(), pitch);
+    let mut strips = Strips::new(ponds.iter().map(|&pond| path.frame.enter(pond)).zip(0..).collect(), pitch);
     let mut passed = Vec::with_capacity(ponds.len());
     let (margin_along, margin_across) =
         (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
@@ -371,36 +372,39 @@ struct Strips {
 }
 
 impl Strips {
-    fn new(ponds: Vec<Point>, pitch: f64) -> Self {
+    fn new(ponds: Vec<(Point, usize)>, pitch: f64) -> Self {
         let (left, right) = ponds
             .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(left, right), pond| (left.min(pond.x), right.max(pond.x)));
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(left, right), (pond, _)| (left.min(pond.x), right.max(pond.x)));
         let max_num_strips = ponds.len().div_ceil(MIN_PONDS_PER_STRIP);
         let width = pitch.max((right - left) / max_num_strips as f64);
         let strips_per_length = if width > 0.0 { 1.0 / width } else { 0.0 };
         let num_strips = ((right - left) * strips_per_length) as usize + 1;
-        let mut strips = Self {
-            left,
-            strips_per_length,
-            ponds: vec![(Point::default(), 0); ponds.len()],
-            ranges: vec![(0, 0); num_strips],
-        };
-        for pond in &ponds {
-            let strip = strips.strip(pond.x);
-            strips.ranges[strip].1 += 1;
+        let mut strips = Self { left, strips_per_length, ranges: vec![(0, ponds.len()); num_strips], ponds };
+        if num_strips > 1 {
+            strips.sort();
+        }
+        strips
+    }
+
+    /// Counting sort: from input order to that of the strips.
+    fn sort(&mut self) {
+        self.ranges.fill((0, 0));
+        for place in 0..self.ponds.len() {
+            let strip = self.strip(self.ponds[place].0.x);
+            self.ranges[strip].1 += 1;
         }
         let mut begin = 0;
-        for range in &mut strips.ranges {
+        for range in &mut self.ranges {
             let end = begin + range.1;
             *range = (begin, begin);
             begin = end;
         }
-        for (index, &pond) in ponds.iter().enumerate() {
-            let strip = strips.strip(pond.x);
-            strips.ponds[strips.ranges[strip].1] = (pond, index);
-            strips.ranges[strip].1 += 1;
+        for pond in self.ponds.clone() {
+            let strip = self.strip(pond.0.x);
+            self.ponds[self.ranges[strip].1] = pond;
+            self.ranges[strip].1 += 1;
         }
-        strips
     }
 
     fn strip(&self, x: f64) -> usize {

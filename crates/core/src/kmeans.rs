@@ -148,9 +148,9 @@ impl Group {
                 let (dx, dy) = (self.xs[lane] - centroid.x, self.ys[lane] - centroid.y);
                 let square = dx * dx + dy * dy;
                 let is_nearer = square < best[lane];
-                let loser = if is_nearer { best[lane] } else { square };
+                let loser = if best[lane] > square { best[lane] } else { square };
                 second[lane] = if loser < second[lane] { loser } else { second[lane] };
-                best[lane] = if is_nearer { square } else { best[lane] };
+                best[lane] = if square < best[lane] { square } else { best[lane] };
                 labels[lane] = if is_nearer { label } else { labels[lane] };
             }
         }

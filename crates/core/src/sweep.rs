@@ -206,53 +206,71 @@ impl Frame {
 /// nothing about it (pairs of ponds a step apart, kilometres from each other), and the lines are drawn apart.
 const MAX_NUM_LINES: f64 = 4096.0;
 
-/// Writes the corners of the back-and-forth path over a convex polygon into `path`: two per line, joined by right angles.
-///
-/// `corners` are those of a closed polygon in the frame of the sweep, whose lines are vertical: the first at the left end,
-/// then one every `pitch` while it is less than half a pitch beyond the right end; a line that misses the polygon takes the
-/// chord half a pitch before it. Of two ends that follow each other, the one that lies inside is pulled to the other's
-/// height (Vasquez-Gomez et al.). A side within the tolerance of a line is part of it; with [`Tolerance::EXACT`],
-/// rounding decides whether it is. O(corners + lines).
-pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tolerance, path: &mut Vec<Point>) {
-    path.clear();
-    let Some(&first) = corners.first() else { return };
-    let (mut low, mut high) = (first, first);
-    for corner in corners {
-        low = Point::new(low.x.min(corner.x), low.y.min(corner.y));
-        high = Point::new(high.x.max(corner.x), high.y.max(corner.y));
+/// What the paths over one polygon have in common, with room for the edges so that no path allocates its own.
+#[derive(Clone, Debug)]
+pub struct Sweeper {
+    pitch: f64,
+    tolerance: Tolerance,
+    sides: Sides,
+}
+
+impl Sweeper {
+    /// Lines `pitch` apart over a polygon of `num_corners`, with what counts as equal on them.
+    #[must_use]
+    pub fn new(num_corners: usize, pitch: f64, tolerance: Tolerance) -> Self {
+        Self { pitch, tolerance, sides: Sides { height: 0.0, edges: Vec::with_capacity(num_corners), passed: (0, 0) } }
     }
-    let (left, right, bottom, top) = (low.x, high.x, low.y, high.y);
-    let pitch = pitch.max((right - left) / MAX_NUM_LINES);
-    let height = (top + 1.0) - (bottom - 1.0);
-    let mut sides = Sides::new(corners, height, tolerance);
-    let mut is_up = starts_up;
-    let mut x = left;
-    while x < right + pitch / 2.0 - tolerance.length {
-        let passed = sides.num_passed;
-        let mut line = sides.chord(x);
-        if line.num_ends == 0 {
-            sides.num_passed = passed;
-            line = sides.chord(x - pitch / 2.0);
-            line.low.x += pitch / 2.0;
-            line.high.x += pitch / 2.0;
-        } else if line.num_ends == 1 {
-            path.push(line.low);
+
+    /// Writes the corners of the back-and-forth path over a convex polygon into `path`: two per line, joined by right angles.
+    ///
+    /// `corners` are those of the polygon, counter-clockwise, in the frame of the sweep, whose lines are vertical: the first at
+    /// the left end, then one every pitch while it is less than half a pitch beyond the right end; a line that misses the
+    /// polygon takes the chord half a pitch before it. Of two ends that follow each other, the one that lies inside is pulled to
+    /// the other's height (Vasquez-Gomez et al.). A side within the tolerance of a line is part of it; with
+    /// [`Tolerance::EXACT`], rounding decides whether it is. O(corners + lines).
+    pub fn path(&mut self, corners: &[Point], starts_up: bool, path: &mut Vec<Point>) {
+        path.clear();
+        let Some(&first) = corners.first() else { return };
+        let (mut low, mut high) = (first, first);
+        for corner in corners {
+            low = Point::new(low.x.min(corner.x), low.y.min(corner.y));
+            high = Point::new(high.x.max(corner.x), high.y.max(corner.y));
         }
-        if line.num_ends > 1 {
-            let (mut enter, exit) = if is_up { (line.low, line.high) } else { (line.high, line.low) };
-            if let Some(last) = path.last_mut() {
-                let is_last_inside = if is_up { enter.y < last.y } else { enter.y > last.y };
-                if is_last_inside {
-                    last.y = enter.y;
-                } else {
-                    enter.y = last.y;
-                }
+        let (left, right, bottom, top) = (low.x, high.x, low.y, high.y);
+        let pitch = self.pitch.max((right - left) / MAX_NUM_LINES);
+        let height = (top + 1.0) - (bottom - 1.0);
+        let tolerance = self.tolerance;
+        let sides = &mut self.sides;
+        sides.reset(corners, height, tolerance);
+        let mut is_up = starts_up;
+        let mut x = left;
+        while x < right + pitch / 2.0 - tolerance.length {
+            let passed = sides.passed;
+            let mut line = sides.chord(x);
+            if line.num_ends == 0 {
+                sides.passed = passed;
+                line = sides.chord(x - pitch / 2.0);
+                line.low.x += pitch / 2.0;
+                line.high.x += pitch / 2.0;
+            } else if line.num_ends == 1 {
+                path.push(line.low);
             }
-            path.push(enter);
-            path.push(exit);
-            is_up = !is_up;
+            if line.num_ends > 1 {
+                let (mut enter, exit) = if is_up { (line.low, line.high) } else { (line.high, line.low) };
+                if let Some(last) = path.last_mut() {
+                    let is_last_inside = if is_up { enter.y < last.y } else { enter.y > last.y };
+                    if is_last_inside {
+                        last.y = enter.y;
+                    } else {
+                        enter.y = last.y;
+                    }
+                }
+                path.push(enter);
+                path.push(exit);
+                is_up = !is_up;
+            }
+            x += pitch;
         }
-        x += pitch;
     }
 }
 
@@ -260,6 +278,7 @@ pub fn sweep_path(corners: &[Point], pitch: f64, starts_up: bool, tolerance: Tol
 ///
 /// The place on it is reckoned as the cut of two segments, the line being as high as the polygon and one unit more at both
 /// ends: as the authors do to the last bit, which decides where [`Tolerance::EXACT`] is asked for.
+#[derive(Clone, Debug)]
 struct Edge {
     from: Point,
     rise: Point,
@@ -283,49 +302,51 @@ impl Edge {
     }
 }
 
-/// The edges of a convex polygon below and above it, each from left to right; without the vertical ones.
+/// The edges of a convex polygon counter-clockwise from its leftmost corner, without the vertical ones: those below it from
+/// left to right, then those above it from right to left.
+#[derive(Clone, Debug)]
 struct Sides {
     height: f64,
-    edges: [Vec<Edge>; 2],
-    /// How many edges of each side lie to the left of the last line.
-    num_passed: [usize; 2],
+    edges: Vec<Edge>,
+    /// How many of the first and of the last edges lie to the left of the last line.
+    passed: (usize, usize),
 }
 
 impl Sides {
-    /// The sides of the polygon of these corners, which come counter-clockwise.
-    fn new(corners: &[Point], height: f64, tolerance: Tolerance) -> Self {
+    /// Takes the polygon of these corners, which come counter-clockwise.
+    fn reset(&mut self, corners: &[Point], height: f64, tolerance: Tolerance) {
         let reach = tolerance.length + 1e-12 * height;
         let margin = height * tolerance.length;
-        let mut edges = [Vec::with_capacity(corners.len()), Vec::with_capacity(corners.len())];
-        let leftmost =
-            (0..corners.len()).min_by(|&one, &other| corners[one].x.total_cmp(&corners[other].x)).unwrap_or(0);
+        let mut leftmost = 0;
+        for (place, corner) in corners.iter().enumerate() {
+            leftmost = if corner.x < corners[leftmost].x { place } else { leftmost };
+        }
         let (end, start) = corners.split_at(leftmost);
         let from = start.iter().chain(end);
         let to = from.clone().skip(1).chain(start.first());
-        for (&from, &to) in from.zip(to) {
+        let edge = |(&from, &to): (&Point, &Point)| {
             let rise = to - from;
             let (left, right) = (from.x.min(to.x) - reach, from.x.max(to.x) + reach);
-            let edge = Edge { from, rise, left, right, whole: height * rise.x.abs(), margin };
-            if edge.whole > margin {
-                edges[usize::from(rise.x < 0.0)].push(edge);
-            }
-        }
-        edges[1].reverse();
-        Self { height, edges, num_passed: [0, 0] }
+            Edge { from, rise, left, right, whole: height * rise.x.abs(), margin }
+        };
+        self.edges.clear();
+        self.edges.extend(from.zip(to).map(edge).filter(|edge| edge.whole > margin));
+        self.height = height;
+        self.passed = (0, 0);
     }
 
     /// Where the line at `x` meets the polygon; `x` is not left of the lines before.
     fn chord(&mut self, x: f64) -> Chord {
         let mut chord = Chord { num_ends: 0, low: Point::default(), high: Point::default() };
-        for (edges, num_passed) in self.edges.iter().zip(&mut self.num_passed) {
-            while edges.get(*num_passed).is_some_and(|edge| edge.right < x) {
-                *num_passed += 1;
-            }
-            for edge in edges[*num_passed..].iter().take_while(|edge| edge.left <= x) {
-                if let Some(end) = edge.at(x, self.height) {
-                    chord.add(end);
-                }
-            }
+        let (below, above) = (self.edges.iter(), self.edges.iter().rev());
+        self.passed.0 += below.clone().skip(self.passed.0).take_while(|edge| edge.right < x).count();
+        self.passed.1 += above.clone().skip(self.passed.1).take_while(|edge| edge.right < x).count();
+        let is_met = |edge: &&Edge| edge.left <= x;
+        for edge in below.skip(self.passed.0).take_while(|edge| edge.rise.x > 0.0).take_while(is_met) {
+            chord.add(edge.at(x, self.height));
+        }
+        for edge in above.skip(self.passed.1).take_while(|edge| edge.rise.x < 0.0).take_while(is_met) {
+            chord.add(edge.at(x, self.height));
         }
         chord
     }
@@ -340,7 +361,8 @@ struct Chord {
 }
 
 impl Chord {
-    fn add(&mut self, end: Point) {
+    fn add(&mut self, end: Option<Point>) {
+        let Some(end) = end else { return };
         if self.num_ends == 0 || end.y < self.low.y {
             self.low = end;
         }
