@@ -372,3 +372,88 @@ impl Chord {
         self.num_ends += 1;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 4 wide and 3 high, from the lower left corner.
+    const RECTANGLE: [Point; 4] =
+        [Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0), Point::new(0.0, 3.0)];
+
+    fn tolerance() -> Tolerance {
+        Tolerance::of_side(10.0)
+    }
+
+    fn path(corners: &[Point], pitch: f64, starts_up: bool) -> Vec<(f64, f64)> {
+        let mut path = Vec::new();
+        Sweeper::new(corners.len(), pitch, tolerance()).path(corners, starts_up, &mut path);
+        path.into_iter().map(|corner| (corner.x, corner.y)).collect()
+    }
+
+    #[test]
+    fn a_rectangle_is_swept_from_side_to_side() {
+        let up = [(0.0, 0.0), (0.0, 3.0), (2.0, 3.0), (2.0, 0.0), (4.0, 0.0), (4.0, 3.0)];
+        assert_eq!(path(&RECTANGLE, 2.0, true), up);
+        assert_eq!(path(&RECTANGLE, 2.0, false), up.map(|(x, y)| (x, 3.0 - y)));
+    }
+
+    #[test]
+    fn the_corner_to_start_from_does_not_matter() {
+        for first in 1..4 {
+            let mut corners = RECTANGLE;
+            corners.rotate_left(first);
+            assert_eq!(path(&corners, 2.0, true), path(&RECTANGLE, 2.0, true));
+        }
+    }
+
+    #[test]
+    fn a_line_beyond_the_right_end_takes_the_chord_half_a_pitch_before() {
+        // Lines at 0, 3 and 6, of which the last is drawn only while it is less than half a pitch beyond the end.
+        let wide = [Point::new(0.0, 0.0), Point::new(5.0, 0.0), Point::new(5.0, 1.0), Point::new(0.0, 1.0)];
+        assert_eq!(path(&wide, 3.0, true)[4..], [(6.0, 0.0), (6.0, 1.0)]);
+        assert_eq!(path(&RECTANGLE, 3.0, true).last(), Some(&(3.0, 0.0)));
+    }
+
+    #[test]
+    fn ends_that_follow_each_other_are_pulled_to_the_outer_one() {
+        // Chords at 0, 1 and 2: the corner, -1 to 1, -2 to 2. The line of the first, without length, is pulled up to 1.
+        let triangle = [Point::new(0.0, 0.0), Point::new(2.0, -2.0), Point::new(2.0, 2.0)];
+        let by_hand = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -2.0), (2.0, -2.0), (2.0, 2.0)];
+        assert_eq!(path(&triangle, 1.0, true), by_hand);
+    }
+
+    #[test]
+    fn no_corner_has_no_path() {
+        assert!(path(&[], 1.0, true).is_empty());
+    }
+
+    #[test]
+    fn the_pairs_of_a_rectangle_are_its_neighbours() {
+        // The quirk: antipodal would be (0, 2) and (1, 3). Row 4 is corner 0 again.
+        let polygon = ClosedPolygon::new(&RECTANGLE, tolerance());
+        assert_eq!(polygon.caliper_pairs(), [(0, 1), (1, 2), (2, 3), (3, 4)]);
+    }
+
+    #[test]
+    fn the_sweeps_of_a_rectangle() {
+        let polygon = ClosedPolygon::new(&RECTANGLE, tolerance());
+        // Both edges leave no width, so the one before is taken; before row 0 lies the edge of no length.
+        assert_eq!(polygon.sweep_of_pair((0, 1)), Sweep { row: 4, starts_up: false });
+        assert_eq!(polygon.sweep_of_pair((1, 2)), Sweep { row: 1, starts_up: false });
+    }
+
+    #[test]
+    fn the_edge_of_a_sweep_points_up_in_its_frame() {
+        let polygon = ClosedPolygon::new(&RECTANGLE, tolerance());
+        for starts_up in [true, false] {
+            for row in 0..4 {
+                let frame = polygon.frame(Sweep { row, starts_up });
+                let (from, to) = (frame.enter(polygon.rows[row]), frame.enter(polygon.rows[row + 1]));
+                let length = polygon.rows[row].distance(polygon.rows[row + 1]);
+                assert!((to.x - from.x).abs() < 1e-12 && (to.y - from.y - length).abs() < 1e-12);
+                assert!(frame.leave(from).distance(polygon.rows[row]) < 1e-12);
+            }
+        }
+    }
+}
