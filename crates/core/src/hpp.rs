@@ -13,8 +13,8 @@
 //! 5. [`cheapest_path`]: the cheapest of them, from the depot and back.
 //! 6. [`order_along`]: the ponds in the order in which that path passes them.
 //!
-//! Complexity: O(n k) per k-means iteration, then per cluster of n ponds O(n log n + h² l) for steps 2 to 5 and O(n l) for
-//! step 6, with h corners of the hull and l sweep lines, about the root of n.
+//! Complexity: O(n k) per k-means iteration, then per cluster of n ponds O(n log n + h (h + l)) for steps 2 to 5 and about
+//! O(n) for step 6, with h corners of the hull and l sweep lines, about the root of n.
 //!
 //! Quirks of the code that decide the routes are kept: a closed counter-clockwise hull goes to a routine for open clockwise
 //! ones ([`ClosedPolygon::caliper_pairs`]), and a leg parallel to an axis costs nothing (`flight_duration`). Changed:
@@ -22,7 +22,7 @@
 //!   takes some of other clusters; here the ponds of a cluster are those that k-means and the repair give it.
 //! - Rounding decides nothing. In the code it decides whether a line meets the side it runs along and which legs are
 //!   parallel to an axis; here a [`Tolerance`] of 1e-9 of the farm's side does. With [`Tolerance::EXACT`], steps 3 to 6
-//!   follow the code to the last bit.
+//!   follow the code to the last bit, but for the sum of turns (`Turned`).
 //! - Nothing depends on units. The code has a unit square of 1000 units, 10 units/s and π/4 rad/s, so that a radian of turn
 //!   costs as much as 1.27 % of the square's side. Here the longer side of the box around the ponds is 1000 units, which is
 //!   0.5 to 0.95 of the unit square's side on the paper's farms (median 0.79). The pitch is not given but measured (`pitch`); on the paper's
@@ -464,4 +464,28 @@ fn sort_along(direction: Point, ponds: &[Point], passed: &mut [(f64, f64, usize)
     passed.sort_unstable_by(|one, other| {
         one.0.total_cmp(&other.0).then_with(|| one.1.total_cmp(&other.1)).then_with(|| one.2.cmp(&other.2))
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_add_up_to_the_sum_of_their_angles() {
+        // No turn, half turns, right angles on both sides of one, and angles whose sum passes two turns.
+        let headings_deg = [0.0, 0.0, 180.0, 0.0, 90.0, 0.0, 30.0, 200.0, 10.0, 190.0, 10.0, -70.0, 45.0, -135.0, 44.0];
+        let headings: Vec<Point> = headings_deg
+            .iter()
+            .map(|degrees: &f64| degrees.to_radians())
+            .map(|angle| Point::new(angle.cos(), angle.sin()))
+            .collect();
+        let mut turned = Turned::default();
+        let mut sum_deg = 0.0;
+        for (place, legs) in headings.windows(2).enumerate() {
+            turned.add(legs[0], legs[1]);
+            let difference_deg = f64::abs(headings_deg[place + 1] - headings_deg[place]);
+            sum_deg += f64::min(difference_deg, 360.0 - difference_deg);
+            assert!((turned.angle().to_degrees() - sum_deg).abs() < 1e-9, "after turn {place}");
+        }
+    }
 }
