@@ -34,8 +34,10 @@ check: build ## Formatters, linters, types and the rules about layers; warnings 
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: build ## Reproduce the HPP row of the paper's Table 1 (about a minute)
-	$(BIN)/python examples/paper_table_1.py --farms 100
+bench: build ## Time the hot parts of the core, and compare the planners on a few farms; tables go to out/bench
+	cargo bench --package pondhop-core --locked --bench '*' -- --warm-up-time 0.3 --measurement-time 1 --sample-size 10
+	$(BIN)/pondhop bench run --generate 50,100,200,300,500,700 --farms 20 --routes 5 --planners search,hpp --time-limits 0.1 -o out/bench
+	$(BIN)/pondhop bench table out/bench/results.csv
 
 docs: build ## Renew the generated pages and pictures of docs/
 	$(BIN)/python -m typer pondhop.cli utils docs --name pondhop --title "pondhop: the command line" --output docs/reference/cli.md

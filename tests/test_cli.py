@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from pondhop import cli, instances, planners
+from pondhop import cli, cli_shared, instances, planners
 
 ROOT = Path(__file__).resolve().parent.parent
 FARM = ROOT / "examples" / "delta_farm.geojson"
@@ -81,8 +81,8 @@ def test_solve_without_output_prints_the_same_json(run: Run, farms: Path, tmp_pa
     def plans(text: str) -> list[dict[str, Any]]:
         return [record | {"elapsed_s": None} for record in json.loads(text)]
 
-    printed = run("solve", farms, "--routes", 4)
-    written = run("solve", farms, "--routes", 4, "--json", "-o", tmp_path / "plans.json")
+    printed = run("solve", farms, "--routes", 4, "--iterations", 300)
+    written = run("solve", farms, "--routes", 4, "--iterations", 300, "--json", "-o", tmp_path / "plans.json")
     assert printed.code == written.code == 0
     assert printed.err == written.err == ""
     assert plans(printed.out) == plans(written.out) == plans((tmp_path / "plans.json").read_text())
@@ -279,8 +279,8 @@ def test_a_bar_shows_up_on_a_terminal_when_something_takes_long(monkeypatch: pyt
     terminal = Terminal()
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", terminal)
-    monkeypatch.setattr(cli, "SECONDS_BEFORE_PROGRESS", 0.0)
-    with cli._progress("Planning", total=2) as advance:
+    monkeypatch.setattr(cli_shared, "SECONDS_BEFORE_PROGRESS", 0.0)
+    with cli_shared.progress("Planning", total=2) as advance:
         advance()
         while "Planning" not in terminal.getvalue():
             time.sleep(0.01)
@@ -290,7 +290,7 @@ def test_a_bar_shows_up_on_a_terminal_when_something_takes_long(monkeypatch: pyt
 def test_no_bar_shows_up_where_nothing_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    with cli._progress("Planning", total=1) as advance:
+    with cli_shared.progress("Planning", total=1) as advance:
         advance()
     assert terminal.getvalue() == ""
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hand_made import make_farm, make_plan, square, two_drones
-from pondhop import InvalidInput, Problem, evaluate
+from pondhop import InvalidInput, Problem, _core, evaluate
 from pondhop.farm import read_farm
 from pondhop.fleet import Fleet
 from pondhop.palette import ROUTE_COLOURS
@@ -20,7 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from pondhop.plot import plot_plan, plot_solution, save_figure
+from pondhop.plot import plot_clusters, plot_plan, plot_solution, save_figure
 
 FARMS = Path(__file__).parents[1] / ".." / "shared" / "data" / "farms"
 
@@ -91,6 +91,20 @@ def test_a_figure_is_drawn_on_the_axes_given() -> None:
     assert ax.get_aspect() == 1.0
     plan = evaluate(problem, sectors(problem, 2))
     assert legend_texts(ax)[0] == f"1: {plan.route_lengths[0]:.3f}, 5 ponds"
+
+
+def test_clusters_are_drawn_with_hulls_and_paths() -> None:
+    depot, ponds, boundary, _ = _core.generate(100, 1)
+    problem = Problem(depot, ponds, 5)
+    clusters = _core.hpp_clusters(problem)
+    ax = plot_clusters(problem, clusters, boundary)
+    assert legend_texts(ax) == [f"{n}: {len(route)} ponds" for n, (route, _, _) in enumerate(clusters, 1)] + ["depot"]
+    # Each path is a line of its own, and with the outline there is an area for each hull.
+    drawn = [np.asarray(line.get_xydata()) for line in ax.lines]
+    for route, _, path in clusters:
+        assert any(np.array_equal(path, line) for line in drawn)
+        assert any(np.array_equal(ponds[route], line) for line in drawn)
+    assert len(ax.collections) == 1 + len(clusters)
 
 
 @pytest.mark.parametrize("positions", [[(0.0, 0.0)], [(0.0, 0.0)] * 3, [(1.0, 0.0), (2.0, 0.0), (900.0, 0.0)]])

@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, final
 
 import numpy as np
@@ -80,6 +80,18 @@ def lower_bound(problem: Problem) -> float: ...
 def lower_bound_of_total(problem: Problem) -> float: ...
 def hpp(problem: Problem, *, seed: int = 1) -> tuple[list[list[int]], float]: ...
 def hpp_clusters(problem: Problem, *, seed: int = 1) -> list[tuple[list[int], list[int], NDArray[np.float64]]]: ...
+def search(
+    problem: Problem,
+    *,
+    seed: int = 1,
+    time_limit_s: float | None = None,
+    iterations: int | None = None,
+    threads: int = 1,
+    slack: float = 0.0,
+    objective: Literal["max", "total"] = "max",
+    start: Sequence[Sequence[int]] | None = None,
+    progress: Callable[[float, int, float], object] | None = None,
+) -> tuple[list[list[int]], float, int, bool]: ...
 def territory(
     problem: Problem, *, seed: int = 1, time_limit_s: float | None = None
 ) -> tuple[list[list[int]], float]: ...

@@ -11,30 +11,28 @@ import json
 import shlex
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
-from threading import Timer
 from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
 
 import typer
 
+from pondhop.cli_bench import bench
+from pondhop.cli_shared import Advance, Json, progress
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from pondhop.farm_features import LonLat
     from pondhop.fleet import Fleet, SamplingStyle
     from pondhop.instances import ResearchFarm
-    from pondhop.planfile import FarmPlan
+    from pondhop.planfile import FarmPlan, Solution
+    from pondhop.planners import ProgressFunction
     from pondhop.solutionfile import Judgement
 
 EXIT_BUG = 1
 EXIT_INVALID_INPUT = 2
 EXIT_INFEASIBLE = 3
-SECONDS_BEFORE_PROGRESS = 2.0
+EXIT_INTERRUPTED = 130
 FIGURE_NAMES = ("plan.png", "plan.svg")
 
 app = typer.Typer(
@@ -45,14 +43,26 @@ app = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.add_typer(bench, name="bench")
 
-Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults on stderr as JSON, for programs.")]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
-PlannerName = Annotated[str, typer.Option(help="Which planner: hpp or territory.")]
+PlannerName = Annotated[str, typer.Option(help="Which planner: search, territory, hpp.")]
 TimeLimit = Annotated[
     float | None, typer.Option("--time-limit", metavar="SECONDS", help="Wall time of planning one farm.")
 ]
 Threads = Annotated[int, typer.Option(min=1, help="Threads a planner may use for one farm.")]
+Iterations = Annotated[
+    int | None, typer.Option(min=1, help="Steps of the search a farm and thread: reproducible, unlike a time limit.")
+]
+Slack = Annotated[
+    float,
+    typer.Option(
+        "--slack", min=0.0, metavar="PERCENT", help="How much longer the longest route may get to shorten the total."
+    ),
+]
+Objective = Annotated[
+    Literal["max", "total"], typer.Option(help="What to minimise: the longest route (then the total), or the total.")
+]
 RequireFeasible = Annotated[bool, typer.Option("--require-feasible", help="Exit with 3 if a plan breaks a rule.")]
 FarmsOption = Annotated[Path | None, typer.Option(help="The research farms that the plans are for.")]
 
@@ -113,10 +123,13 @@ def plan(
         str | None, typer.Option(metavar="LON,LAT", help="Where drones start and land, if the file does not say.")
     ] = None,
     sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
-    planner: PlannerName = "hpp",
+    planner: PlannerName = "search",
     time_limit_s: TimeLimit = None,
     seed: Seed = 1,
     threads: Threads = 1,
+    iterations: Iterations = None,
+    slack_percent: Slack = 0.0,
+    objective: Objective = "max",
     figure: Annotated[bool, typer.Option(help="Draw the plan (PNG and SVG).")] = True,
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
@@ -135,11 +148,20 @@ def plan(
     if figure:
         _require_matplotlib()
     chosen_fleet = _fleet(drones, fleet, sampling)
-    with _progress("Planning", total=4 if figure else 3) as advance:
+    with progress("Planning", total=4 if figure else 3) as advance:
         read = read_farm(farm, depot=_lonlat("--depot", depot) if depot is not None else None)
         advance()
         farm_plan = planners.plan(
-            read, chosen_fleet, planner=planner, seed=seed, time_limit_s=time_limit_s, threads=threads
+            read,
+            chosen_fleet,
+            planner=planner,
+            seed=seed,
+            time_limit_s=time_limit_s,
+            threads=threads,
+            iterations=iterations,
+            slack_percent=slack_percent,
+            objective=objective,
+            progress=_search_progress(advance),
         )
         advance()
         output.mkdir(parents=True, exist_ok=True)
@@ -176,10 +198,16 @@ def plan(
 def solve(
     farms: Annotated[Path, typer.Argument(exists=True, help="Research farms as JSON, or a TSPLIB .tsp file.")],
     routes: Annotated[int, typer.Option(min=1, help="At most this many routes a farm.")],
-    planner: PlannerName = "hpp",
+    planner: PlannerName = "search",
     time_limit_s: TimeLimit = None,
     seed: Seed = 1,
     threads: Threads = 1,
+    iterations: Iterations = None,
+    slack_percent: Slack = 0.0,
+    objective: Objective = "max",
+    start: Annotated[
+        Path | None, typer.Option(exists=True, help="Plans of 'pondhop solve' that the search begins with.")
+    ] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="File for the plans; else stdout.")] = None,
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
@@ -187,7 +215,10 @@ def solve(
     """Plan every farm of a research file and write the routes as JSON, one object a farm.
 
     - `pondhop solve farms.json --routes 5 -o plans.json`
+    - `pondhop solve farms.json --routes 5 --time-limit 0.1 --slack 1 -o plans.json`
     - `pondhop solve kroa200.tsp --routes 3 --planner hpp --seed 7`
+
+    Ctrl-C ends the search of a farm with the best plan so far, and writes the plans of the farms until then.
 
     The fields of an object:
 
@@ -200,17 +231,32 @@ def solve(
     Every pond is in exactly one route, and there are at most `--routes` of them.
     """
     from pondhop import planners
-    from pondhop.solutionfile import solutions_json
+    from pondhop.solutionfile import read_routes, solutions_json
 
     read = _research_farms(farms)
-    solutions = []
-    with _progress("Planning", total=len(read)) as advance:
-        for farm in read:
+    starts = read_routes(start) if start is not None else None
+    if starts is not None:
+        _check_same_number(read, starts)
+    solutions: list[Solution] = []
+    with progress("Planning", total=len(read)) as advance:
+        for index, farm in enumerate(read):
             problem = farm.to_problem(routes)
-            solutions.append(
-                planners.solve(problem, planner=planner, seed=seed, time_limit_s=time_limit_s, threads=threads)
+            solution = planners.solve(
+                problem,
+                planner=planner,
+                seed=seed,
+                time_limit_s=time_limit_s,
+                threads=threads,
+                iterations=iterations,
+                slack_percent=slack_percent,
+                objective=objective,
+                start=starts[index] if starts is not None else None,
+                progress=_search_progress(advance),
             )
+            solutions.append(solution)
             advance()
+            if solution.is_interrupted:
+                break
     text = solutions_json(solutions)
     if output is not None:
         _write_text(output, text)
@@ -220,6 +266,9 @@ def solve(
         from pondhop import tables
 
         tables.print_solutions(solutions)
+    if solutions[-1].is_interrupted:
+        typer.echo(f"pondhop: stopped; {len(solutions)} of {len(read)} farms are planned", err=True)
+        raise typer.Exit(EXIT_INTERRUPTED)
     if require_feasible and not all(solution.plan.is_feasible for solution in solutions):
         raise typer.Exit(EXIT_INFEASIBLE)
 
@@ -281,7 +330,7 @@ def plot(
         raise InvalidInput([Fault("--output", f"{output} is neither .png nor .svg", "let the name end in one of them")])
     from pondhop import plot as figures
 
-    with _progress("Drawing", total=1) as advance:
+    with progress("Drawing", total=1) as advance:
         if farms is None:
             from pondhop.planfile import read_plan_json
 
@@ -390,7 +439,7 @@ def _lonlat(option: str, text: str) -> LonLat:
 def _research_farms(path: Path) -> list[ResearchFarm]:
     from pondhop import instances
 
-    return [instances.read_tsplib(path)] if path.suffix.lower() == ".tsp" else instances.read_farms(path)
+    return instances.read(path)
 
 
 def _judgements(plans: Path, farms: Path, num_routes: int | None) -> list[Judgement]:
@@ -400,7 +449,7 @@ def _judgements(plans: Path, farms: Path, num_routes: int | None) -> list[Judgem
     read = _research_farms(farms)
     _check_same_number(read, routes_of_farms)
     judgements = []
-    with _progress("Evaluating", total=len(read)) as advance:
+    with progress("Evaluating", total=len(read)) as advance:
         for index, (farm, routes) in enumerate(zip(read, routes_of_farms, strict=True)):
             problem = farm.to_problem(num_routes or max(1, len(routes)))
             judgements.append(judge(index, problem, routes))
@@ -439,25 +488,13 @@ def _write_text(path: Path, text: str) -> None:
     path.write_text(text)
 
 
-@contextmanager
-def _progress(description: str, total: int) -> Iterator[Callable[[], None]]:
-    """Show a progress bar on stderr once something has taken two seconds; yield what advances it by one."""
-    if not sys.stderr.isatty():
-        yield lambda: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
+def _search_progress(advance: Advance) -> ProgressFunction:
+    """Show how far a search is: its best longest route, in seconds or the units of a research farm."""
 
-    progress = Progress(console=Console(stderr=True), transient=True)
-    task = progress.add_task(description, total=total)
-    start = Timer(SECONDS_BEFORE_PROGRESS, progress.start)
-    start.start()
-    try:
-        yield lambda: progress.advance(task)
-    finally:
-        start.cancel()
-        start.join()
-        progress.stop()
+    def report(max_route_cost: float, num_iterations: int, share: float) -> None:
+        advance(min(share, 0.999), f"longest {max_route_cost:.4g} after {num_iterations:,} steps")
+
+    return report
 
 
 def _print_invalid_input(faults: tuple[Fault, ...], as_json: bool) -> None:

@@ -95,6 +95,17 @@ def generate(
     return [ResearchFarm(*_core.generate(num_ponds, (seed << 32) + index, variant)) for index in range(num_farms)]
 
 
+def read(path: str | Path) -> list[ResearchFarm]:
+    """Read research farms of either format: a TSPLIB file if the name ends in ``.tsp``, else JSON.
+
+    Raises
+    ------
+    InvalidInput
+        As `read_tsplib` and `read_farms`.
+    """
+    return [read_tsplib(path)] if Path(path).suffix.lower() == ".tsp" else read_farms(path)
+
+
 def read_farms(path: str | Path) -> list[ResearchFarm]:
     """Read a JSON list of ``{"depot": [x, y], "ponds": [[x, y], ...], "boundary": [[x, y], ...], "spacing": s}``.
 

@@ -51,6 +51,10 @@ class Solution:
         No plan has a shorter longest route, in length units.
     separation
         `None` where nobody measured it.
+    cpu_s
+        Processor time of all threads of this process while it planned; 0 for a plan that was read.
+    is_interrupted
+        Whether Ctrl-C ended the planning; the plan is the best so far.
     """
 
     problem: Problem
@@ -60,6 +64,8 @@ class Solution:
     elapsed_s: float
     lower_bound: float
     separation: Separation | None = None
+    cpu_s: float = 0.0
+    is_interrupted: bool = False
 
     @property
     def gap_percent(self) -> float | None:

@@ -6,11 +6,12 @@ passed in place of a name: ``solve(problem, planner=my_planner)``.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, get_args
 
 from pondhop import _core
 from pondhop._core import Problem
@@ -29,23 +30,66 @@ Routes hold pond indices in flying order, the depot implied at both ends; at mos
 """
 
 
+SEARCH_SECONDS_PER_POND = 2e-3
+SEARCH_SECONDS = (0.1, 60.0)
+"""How long `search` takes where neither a time limit nor iterations are given: by pond, at least and at most."""
+
+Objective = Literal["max", "total"]
+ProgressFunction = Callable[[float, int, float], object]
+"""Told about ten times a second: longest route so far in seconds, iterations, share of the effort used."""
+
+
 @dataclass(frozen=True)
 class Effort:
-    """How hard a planner tries.
+    """How hard a planner tries, and for what. One-shot planners ignore all but the seed.
 
     Attributes
     ----------
     seed
-        Of all random choices: the same seed gives the same routes.
+        Of all random choices: the same seed and iterations give the same routes.
     time_limit_s
-        Wall time from coordinates to finished routes; `None` lets the planner decide. One-shot planners ignore it.
+        Wall time from coordinates to finished routes; `None` lets the planner decide.
     threads
-        How many threads the planner may use. Planners that know only one ignore it.
+        How many threads the planner may use.
+    iterations
+        Steps of the search, in place of a time limit or beside one.
+    slack_percent
+        How much the longest route may grow to shorten the total.
+    objective
+        ``max``: the longest route, then the total; ``total``: the total.
+    start
+        Routes to begin with.
+    progress
+        See `ProgressFunction`.
     """
 
     seed: int = 1
     time_limit_s: float | None = None
     threads: int = 1
+    iterations: int | None = None
+    slack_percent: float = 0.0
+    objective: Objective = "max"
+    start: Routes | None = None
+    progress: ProgressFunction | None = None
+
+
+@dataclass(frozen=True)
+class Planned:
+    """What a planner returns.
+
+    Attributes
+    ----------
+    routes
+        Pond indices per route in flying order.
+    elapsed_s
+        From coordinates to finished routes.
+    is_interrupted
+        Whether Ctrl-C ended the planning; the routes are the best so far.
+    """
+
+    routes: Routes
+    elapsed_s: float
+    is_interrupted: bool = False
 
 
 @dataclass(frozen=True)
@@ -58,27 +102,53 @@ class Planner:
         As in ``planner=`` and ``--planner``.
     description
         One line for help and tables.
-    routes
-        Problem and effort -> routes, and the seconds from coordinates to finished routes.
+    run
+        Plans a problem with an effort.
     """
 
     name: str
     description: str
-    routes: Callable[[Problem, Effort], tuple[Routes, float]]
+    run: Callable[[Problem, Effort], Planned]
+
+
+def _search(problem: Problem, effort: Effort) -> Planned:
+    time_limit_s = effort.time_limit_s
+    if time_limit_s is None and effort.iterations is None:
+        least_s, most_s = SEARCH_SECONDS
+        time_limit_s = min(max(least_s, SEARCH_SECONDS_PER_POND * problem.num_ponds), most_s)
+    routes, elapsed_s, _, is_interrupted = _core.search(
+        problem,
+        seed=effort.seed,
+        time_limit_s=time_limit_s,
+        iterations=effort.iterations,
+        threads=effort.threads,
+        slack=effort.slack_percent / 100,
+        objective=effort.objective,
+        start=effort.start,
+        progress=effort.progress,
+    )
+    return Planned(routes, elapsed_s, is_interrupted)
 
 
 PLANNERS = {
     planner.name: planner
     for planner in (
         Planner(
+            "search",
+            "the shortest longest route, then the shortest total, as good as the time allows",
+            _search,
+        ),
+        Planner(
             "hpp",
             "the paper's planner: k-means clusters, each flown back and forth; a territory for every drone",
-            lambda problem, effort: _core.hpp(problem, seed=effort.seed),
+            lambda problem, effort: Planned(*_core.hpp(problem, seed=effort.seed)),
         ),
         Planner(
             "territory",
             "balanced and short routes, each in a territory of its own: the hulls of their ponds do not touch",
-            lambda problem, effort: _core.territory(problem, seed=effort.seed, time_limit_s=effort.time_limit_s),
+            lambda problem, effort: Planned(
+                *_core.territory(problem, seed=effort.seed, time_limit_s=effort.time_limit_s)
+            ),
         ),
     )
 }
@@ -88,10 +158,15 @@ PLANNERS = {
 def solve(
     problem: Problem,
     *,
-    planner: str | PlannerFunction = "hpp",
+    planner: str | PlannerFunction = "search",
     seed: int = 1,
     time_limit_s: float | None = None,
     threads: int = 1,
+    iterations: int | None = None,
+    slack_percent: float = 0.0,
+    objective: Objective = "max",
+    start: Routes | None = None,
+    progress: ProgressFunction | None = None,
 ) -> Solution:
     """Plan routes for a problem.
 
@@ -101,7 +176,7 @@ def solve(
         What is to be planned.
     planner
         A name in `PLANNERS`, or a function of your own (see `PlannerFunction`).
-    seed, time_limit_s, threads
+    seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress
         See `Effort`.
 
     Returns
@@ -114,19 +189,23 @@ def solve(
     InvalidInput
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
-    effort = Effort(seed, time_limit_s, threads)
-    faults = _faults(effort)
+    effort = Effort(seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress)
+    faults = _faults(effort, problem)
     chosen = _chosen(planner, faults)
     if chosen is None or faults:
         raise InvalidInput(faults)
-    routes, elapsed_s = chosen.routes(problem, effort)
+    cpu_start_s = time.process_time()
+    planned = chosen.run(problem, effort)
+    cpu_s = time.process_time() - cpu_start_s
     return Solution(
         problem=problem,
-        plan=_core.evaluate(problem, routes),
+        plan=_core.evaluate(problem, planned.routes),
         planner=chosen.name,
         seed=seed,
-        elapsed_s=elapsed_s,
+        elapsed_s=planned.elapsed_s,
+        cpu_s=cpu_s,
         lower_bound=_core.lower_bound(problem),
+        is_interrupted=planned.is_interrupted,
     )
 
 
@@ -134,10 +213,14 @@ def plan(
     farm: Farm,
     fleet: Fleet,
     *,
-    planner: str | PlannerFunction = "hpp",
+    planner: str | PlannerFunction = "search",
     seed: int = 1,
     time_limit_s: float | None = None,
     threads: int = 1,
+    iterations: int | None = None,
+    slack_percent: float = 0.0,
+    objective: Objective = "max",
+    progress: ProgressFunction | None = None,
 ) -> FarmPlan:
     """Plan a round over a farm for a fleet.
 
@@ -147,7 +230,7 @@ def plan(
         See `pondhop.read_farm`.
     fleet
         The drones and how they sample.
-    planner, seed, time_limit_s, threads
+    planner, seed, time_limit_s, threads, iterations, slack_percent, objective, progress
         See `solve`.
 
     Returns
@@ -161,12 +244,22 @@ def plan(
         As `solve`.
     """
     problem = farm.to_problem(fleet)
-    solution = solve(problem, planner=planner, seed=seed, time_limit_s=time_limit_s, threads=threads)
+    solution = solve(
+        problem,
+        planner=planner,
+        seed=seed,
+        time_limit_s=time_limit_s,
+        threads=threads,
+        iterations=iterations,
+        slack_percent=slack_percent,
+        objective=objective,
+        progress=progress,
+    )
     separation = _core.separation(problem, solution.plan.routes)
     return FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
 
 
-def _faults(effort: Effort) -> list[Fault]:
+def _faults(effort: Effort, problem: Problem) -> list[Fault]:
     faults = []
     if not 0 <= effort.seed < 2**64:
         faults.append(Fault("seed", f"{effort.seed} is not a whole number from 0 to 2^64 - 1", "choose another seed"))
@@ -174,7 +267,31 @@ def _faults(effort: Effort) -> list[Fault]:
         faults.append(Fault("time_limit_s", f"{effort.time_limit_s} is not above 0", "give seconds, or leave it out"))
     if effort.threads < 1:
         faults.append(Fault("threads", f"{effort.threads} is below 1", "give at least one thread"))
+    if effort.iterations is not None and effort.iterations < 1:
+        faults.append(Fault("iterations", f"{effort.iterations} is below 1", "give at least one, or leave it out"))
+    if not 0 <= effort.slack_percent < math.inf:
+        faults.append(Fault("slack_percent", f"{effort.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
+    if effort.objective not in get_args(Objective):
+        action = f"choose one of: {', '.join(get_args(Objective))}"
+        faults.append(Fault("objective", f"there is no objective {effort.objective!r}", action))
+    if effort.start is not None:
+        faults += _start_faults(problem, effort.start)
     return faults
+
+
+def _start_faults(problem: Problem, start: Routes) -> list[Fault]:
+    """Return what keeps routes from being a start: a pond missed or visited twice, a route too many."""
+    try:
+        plan = _core.evaluate(problem, start)
+    except InvalidInput as error:
+        return [replace(fault, path=f"start.{fault.path}") for fault in error.faults]
+    visits = sorted(pond for route in plan.routes for pond in route)
+    if visits == list(range(problem.num_ponds)) and len(plan.routes) <= problem.num_drones:
+        return []
+    return [
+        Fault("start", violation, "give a plan that only time or length limits may break")
+        for violation in plan.violations
+    ]
 
 
 def _chosen(planner: str | PlannerFunction, faults: list[Fault]) -> Planner | None:
@@ -192,10 +309,10 @@ def _chosen(planner: str | PlannerFunction, faults: list[Fault]) -> Planner | No
 def _timed(function: PlannerFunction) -> Planner:
     """Put a function of the user into the shape of our planners."""
 
-    def routes(problem: Problem, effort: Effort) -> tuple[Routes, float]:
+    def run(problem: Problem, effort: Effort) -> Planned:
         start = time.perf_counter()
         found = function(problem, effort.seed, effort.time_limit_s)
-        return found, time.perf_counter() - start
+        return Planned(found, time.perf_counter() - start)
 
     name = getattr(function, "__name__", type(function).__name__)
-    return Planner(name, (function.__doc__ or "").partition("\n")[0], routes)
+    return Planner(name, (function.__doc__ or "").partition("\n")[0], run)

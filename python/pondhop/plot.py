@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 Theme = Literal["light", "dark"]
 Points = NDArray[np.float64]
+Cluster = tuple[Sequence[int], Sequence[int], Points]
+"""Ponds, hull and path of one cluster of HPP."""
 
 _LINE_STYLES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)))
 _MARKERS = ("o", "s", "^", "D")
@@ -152,6 +154,62 @@ def plot_solution(
     return ax
 
 
+def plot_clusters(
+    problem: Problem,
+    clusters: Sequence[Cluster],
+    boundary: Points | None = None,
+    ax: Axes | None = None,
+    *,
+    theme: Theme = "light",
+) -> Axes:
+    """Draw what HPP did, as the paper's figure 2: ponds by cluster, their convex hulls and the back-and-forth paths.
+
+    Parameters
+    ----------
+    problem
+        Depot and ponds.
+    clusters
+        Per cluster the pond indices, those at the corners of the hull, and the corners of the path, shape (k, 2), as
+        `pondhop._core.hpp_clusters` returns them.
+    boundary
+        The farm's outline, shape (k, 2), or `None`.
+    ax
+        Where to; a new figure if `None`.
+    theme
+        ``dark`` for reading at night.
+
+    Returns
+    -------
+    Axes
+        In the units of the farm.
+    """
+    look = _LOOKS[theme]
+    outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
+    paths = [path for _, _, path in clusters]
+    ax = _prepared(ax, np.vstack([problem.depot[None], problem.ponds, *paths, *outline]), look)
+    _draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
+    for index, (ponds, hull, path) in enumerate(clusters):
+        colour, cycle = route_colour(index), index // len(ROUTE_COLOURS)
+        corners = problem.ponds[hull]
+        _draw_areas(ax, [corners], facecolor=(colour, 0.10), edgecolor=(colour, 0.6), linewidth=1.0, zorder=2)
+        ax.plot(*path.T, color=colour, linewidth=1.4, linestyle=_LINE_STYLES[cycle % 4], zorder=3)
+        ax.plot(
+            *problem.ponds[ponds].T,
+            color=colour,
+            linestyle="",
+            marker=_MARKERS[cycle % 4],
+            markersize=_marker_size(problem),
+            label=f"{index + 1}: {len(ponds)} ponds",
+            zorder=4,
+        )
+    _draw_depot(ax, problem, look)
+    _write_legend(ax, look)
+    _write_title(
+        ax, f"{problem.num_ponds} ponds, {len(clusters)} clusters", ["convex hulls", "back-and-forth paths"], look
+    )
+    return ax
+
+
 def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
     """Write the figure of some axes; the same figure gives the same bytes.
 
@@ -222,7 +280,7 @@ def _draw_areas(ax: Axes, rings: Sequence[Points], **style: object) -> None:
 def _draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], look: _Look) -> None:
     """Each route with the hull of its ponds, its number in the hull's middle, and a line in the legend."""
     diagonal = float(np.hypot(np.diff(ax.get_xlim()), np.diff(ax.get_ylim()))[0])
-    marker_size = float(np.clip(60 / np.sqrt(problem.num_ponds), 1.8, 5.0))
+    marker_size = _marker_size(problem)
     for index, route in enumerate(plan.routes):
         colour, cycle = route_colour(index), index // len(ROUTE_COLOURS)
         ponds = problem.ponds[route]
@@ -245,6 +303,15 @@ def _draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], 
     unserved = problem.ponds[plan.unserved]
     if len(unserved):
         ax.plot(*unserved.T, "x", color=look.no_fly, markersize=6, markeredgewidth=1.6, zorder=5, label="not visited")
+    _draw_depot(ax, problem, look)
+    _write_legend(ax, look)
+
+
+def _marker_size(problem: Problem) -> float:
+    return float(np.clip(60 / np.sqrt(problem.num_ponds), 1.8, 5.0))
+
+
+def _draw_depot(ax: Axes, problem: Problem, look: _Look) -> None:
     ax.plot(
         *problem.depot,
         color=look.ink,
@@ -255,6 +322,9 @@ def _draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], 
         zorder=7,
         label="depot",
     )
+
+
+def _write_legend(ax: Axes, look: _Look) -> None:
     ax.legend(
         loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0, frameon=False, labelcolor=look.ink, fontsize=9
     )

@@ -99,16 +99,18 @@ impl SparseGraph {
         let mut ponds: Vec<Point> = problem.visits().iter().map(|visit| visit.position).collect();
         ponds.sort_by(|a, b| depot.distance(*b).total_cmp(&depot.distance(*a)));
         let tree = KdTree::new(&ponds);
+        let mut nearest = Vec::new();
         let (mut legs, mut half_reaches, mut sum_nearest) = (Vec::new(), Vec::new(), 0.0);
         for (pond, &position) in ponds.iter().enumerate() {
-            let nearest = tree.nearest(pond, num_neighbours);
-            for &(_, other) in &nearest {
+            tree.nearest(pond, num_neighbours, &mut nearest);
+            for near in &nearest {
+                let other = near.index as usize;
                 let length = position.distance(ponds[other]);
                 legs.push(Leg { nearer: pond.max(other), farther: pond.min(other), length });
             }
-            sum_nearest += nearest.first().map_or(0.0, |first| first.0.sqrt());
+            sum_nearest += nearest.first().map_or(0.0, |first| first.squared_distance.sqrt());
             if ponds.len() > num_neighbours + 1 {
-                half_reaches.push(nearest.last().map_or(0.0, |last| 0.5 * last.0.sqrt()));
+                half_reaches.push(nearest.last().map_or(0.0, |last| 0.5 * last.squared_distance.sqrt()));
             }
         }
         legs.sort_unstable_by_key(|leg| (leg.nearer, leg.farther));

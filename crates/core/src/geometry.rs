@@ -82,10 +82,22 @@ pub fn convex_hull_within(points: &[Point], tolerance: f64) -> Vec<usize> {
         (points[one].x - points[other].x).abs() <= tolerance && (points[one].y - points[other].y).abs() <= tolerance
     };
     order.dedup_by(|later, earlier| is_same_place(*later, *earlier));
-    let mut hull = half_hull(points, order.iter().copied(), tolerance);
+    // In a column of a grid only the lowest and the highest point can be corners.
+    let mut num_kept = 0;
+    for place in 0..order.len() {
+        let x = points[order[place]].x;
+        let is_between = num_kept > 0
+            && points[order[num_kept - 1]].x == x
+            && order.get(place + 1).is_some_and(|&next| points[next].x == x);
+        order[num_kept] = order[place];
+        num_kept += usize::from(!is_between);
+    }
+    order.truncate(num_kept);
+    let mut hull = Vec::with_capacity(order.len() + 1);
+    append_half_hull(points, order.iter().copied(), tolerance, &mut hull);
     if order.len() > 1 {
         hull.pop();
-        hull.extend(half_hull(points, order.iter().rev().copied(), tolerance));
+        append_half_hull(points, order.iter().rev().copied(), tolerance, &mut hull);
         hull.pop();
     }
     // The corner where the two halves meet was tested against neither.
@@ -95,18 +107,17 @@ pub fn convex_hull_within(points: &[Point], tolerance: f64) -> Vec<usize> {
     hull
 }
 
-/// The corners below the line from the first of the sorted points to the last, both included.
-fn half_hull(points: &[Point], sorted: impl Iterator<Item = usize>, tolerance: f64) -> Vec<usize> {
-    let mut corners: Vec<usize> = Vec::new();
+/// Appends the corners below the line from the first of the sorted points to the last, both included.
+fn append_half_hull(points: &[Point], sorted: impl Iterator<Item = usize>, tolerance: f64, corners: &mut Vec<usize>) {
+    let first = corners.len();
     for index in sorted {
-        while let [.., before, last] = corners[..]
+        while let [.., before, last] = corners[first..]
             && is_flat_corner(points, [before, last, index], tolerance)
         {
             corners.pop();
         }
         corners.push(index);
     }
-    corners
 }
 
 /// Whether the second of three points lies to the left of the line from the first to the third, or within reach of it.

@@ -6,32 +6,34 @@
 //! Herrera-Lozada, Coverage path planning for 2D convex regions, J. Intell. Robot. Syst. 2020 (doi
 //! 10.1007/s10846-019-01024-y), which the paper reaches through Mukherjee's Optimal Coverage Algorithm. The steps:
 //!
-//! 1. [`cluster`]: k-means; undersized clusters are repaired.
+//! 1. `cluster`: k-means; a cluster that is no polygon is repaired.
 //! 2. [`convex_hull_within`] of each cluster.
 //! 3. [`ClosedPolygon::caliper_pairs`]: pairs of hull corners.
-//! 4. [`ClosedPolygon::sweep_of_pair`], [`sweep_path`]: a back-and-forth path for each pair.
+//! 4. [`ClosedPolygon::sweep_of_pair`], [`Sweeper::path`]: a back-and-forth path for each pair.
 //! 5. [`cheapest_path`]: the cheapest of them, from the depot and back.
 //! 6. [`order_along`]: the ponds in the order in which that path passes them.
 //!
-//! Complexity: O(n k) per k-means iteration, then per cluster O(h (h + l)) for steps 2 to 5 and O(n l) for step 6, with h
-//! corners of the hull and l sweep lines, both about the root of the cluster's ponds.
+//! Complexity: O(n k) per k-means iteration, then per cluster of n ponds O(n log n + h (h + l)) for steps 2 to 5 and about
+//! O(n) for step 6, with h corners of the hull and l sweep lines, about the root of n.
 //!
 //! Quirks of the code that decide the routes are kept: a closed counter-clockwise hull goes to a routine for open clockwise
-//! ones ([`ClosedPolygon::caliper_pairs`]), and a leg parallel to an axis costs nothing ([`Turning::cost`]). Changed:
+//! ones ([`ClosedPolygon::caliper_pairs`]), and a leg parallel to an axis costs nothing (`flight_duration`). Changed:
 //! - No pond is lost or visited twice. The code takes the ponds inside each hull, which misses those on slanted sides and
-//!   takes some of other clusters; here the ponds of a cluster are those of its label.
-//! - What rounding decided there (does a line meet the side it runs along?) is decided here by a tolerance of 1e-9 of the
-//!   farm's side, in favour of the side.
+//!   takes some of other clusters; here the ponds of a cluster are those that k-means and the repair give it.
+//! - Rounding decides nothing. In the code it decides whether a line meets the side it runs along and which legs are
+//!   parallel to an axis; here a [`Tolerance`] of 1e-9 of the farm's side does. With [`Tolerance::EXACT`], steps 3 to 6
+//!   follow the code to the last bit, but for the sum of turns (`Turned`).
 //! - Nothing depends on units. The code has a unit square of 1000 units, 10 units/s and π/4 rad/s, so that a radian of turn
-//!   costs as much as 1.27 % of the square's side; here it costs 1.27 % of the farm's side ([`Turning::of_farm`]). The pitch
-//!   is not given but measured ([`pitch`]); on the paper's farms it is the same.
+//!   costs as much as 1.27 % of the square's side. Here the longer side of the box around the ponds is 1000 units, which is
+//!   0.5 to 0.95 of the unit square's side on the paper's farms (median 0.79). The pitch is not given but measured (`pitch`); on the paper's
+//!   farms it is the same.
 
 use crate::geometry::{Point, convex_hull_within, cross, dot, extent};
-use crate::kmeans::kmeans;
+use crate::kmeans::{Clustering, kmeans};
 use crate::problem::Problem;
 use crate::random::Random;
-use crate::sweep::{ClosedPolygon, Frame, Tolerance, sweep_path};
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use crate::sweep::{ClosedPolygon, Frame, Sweeper, Tolerance};
+use std::f64::consts::{FRAC_PI_4, PI};
 
 /// Ponds that make a polygon; a cluster with fewer takes ponds of its neighbours (paper, section 3).
 const MIN_CLUSTER_SIZE: usize = 3;
@@ -43,6 +45,11 @@ const SPEED: f64 = 10.0;
 const TURN_RATE: f64 = FRAC_PI_4;
 /// Ponds whose nearest neighbours the pitch is taken from.
 const MAX_PITCH_SAMPLE: usize = 32;
+
+/// Corners of a sweep that there is room for from the start.
+const MAX_USUAL_CORNERS: usize = 32;
+/// Ponds that a strip holds on average at least: with fewer, looking at the strips costs more than it saves.
+const MIN_PONDS_PER_STRIP: usize = 12;
 
 /// What HPP did, for figures and for study.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,10 +92,8 @@ pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
     let depot = enter(problem.depot().position);
     let tolerance = Tolerance::of_side(SIDE);
     let pitch = pitch(&ponds);
-    let labels = cluster(&ponds, problem.vehicle_type().num_available, tolerance, &mut Random::new(seed));
-    let clusters = members_of(&labels)
+    let clusters = cluster(&ponds, problem.vehicle_type().num_available, tolerance, &mut Random::new(seed))
         .into_iter()
-        .filter(|members| !members.is_empty())
         .map(|members| {
             let own: Vec<Point> = members.iter().map(|&pond| ponds[pond]).collect();
             let corners = convex_hull_within(&own, tolerance.length);
@@ -109,25 +114,33 @@ pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
 /// have a neighbour next to them.
 fn pitch(ponds: &[Point]) -> f64 {
     let num_sampled = ponds.len().min(MAX_PITCH_SAMPLE);
+    let mut sorted = ponds.to_vec();
+    sorted.sort_unstable_by(|one, other| one.x.total_cmp(&other.x));
     let mut squares: Vec<f64> =
-        (0..num_sampled).map(|sample| nearest_square(ponds, ponds[sample * ponds.len() / num_sampled])).collect();
+        (0..num_sampled).map(|sample| nearest_square(&sorted, ponds[sample * ponds.len() / num_sampled])).collect();
     let (_, median, _) = squares.select_nth_unstable_by(num_sampled / 2, f64::total_cmp);
     if median.is_finite() { median.sqrt() } else { 0.0 }
 }
 
-/// The squared distance to the nearest pond in another place; infinite if there is none.
-fn nearest_square(ponds: &[Point], place: Point) -> f64 {
-    // Four minima side by side, so that no comparison waits for the one before.
-    let mut nearest = [f64::INFINITY; 4];
-    for group in ponds.chunks(nearest.len()) {
-        for (nearest, pond) in nearest.iter_mut().zip(group) {
-            let offset = *pond - place;
-            let square = dot(offset, offset);
-            let square = if square > 0.0 { square } else { f64::INFINITY };
-            *nearest = if square < *nearest { square } else { *nearest };
+/// The squared distance to the nearest pond in another place; infinite if there is none. `sorted` is so by x.
+fn nearest_square(sorted: &[Point], place: Point) -> f64 {
+    let (west, east) = sorted.split_at(sorted.partition_point(|pond| pond.x < place.x));
+    let mut nearest = f64::INFINITY;
+    let mut is_farther_on = |pond: &Point| {
+        let offset = *pond - place;
+        if offset.x * offset.x >= nearest {
+            return true;
         }
-    }
-    nearest.into_iter().fold(f64::INFINITY, f64::min)
+        let square = dot(offset, offset);
+        if 0.0 < square && square < nearest {
+            nearest = square;
+        }
+        false
+    };
+    // Both stop where the first coordinate alone is too far away.
+    let _ = east.iter().any(&mut is_farther_on);
+    let _ = west.iter().rev().any(&mut is_farther_on);
+    nearest
 }
 
 /// Step 1: the cluster of each pond, by k-means on the ponds alone (paper, section 3: "clustering is accomplished using
@@ -135,82 +148,132 @@ fn nearest_square(ponds: &[Point], place: Point) -> f64 {
 ///
 /// A cluster too small or too flat to form a polygon takes the nearest ponds of its neighbours (same section), as long as
 /// the neighbour keeps a polygon of its own: with fewer than three ponds a drone, some clusters stay small.
-fn cluster(ponds: &[Point], num_clusters: usize, tolerance: Tolerance, random: &mut Random) -> Vec<usize> {
-    let clustering = kmeans(ponds, num_clusters, random);
-    let mut labels = clustering.labels;
-    for (label, &centroid) in clustering.centroids.iter().enumerate() {
-        while let Some(taken) = pond_to_take(ponds, &labels, label, centroid, tolerance) {
+fn cluster(ponds: &[Point], num_clusters: usize, tolerance: Tolerance, random: &mut Random) -> Vec<Vec<usize>> {
+    let Clustering { mut labels, centroids } = kmeans(ponds, num_clusters, random);
+    let mut members = members_of(&labels, centroids.len());
+    for (label, &centroid) in centroids.iter().enumerate() {
+        while !is_polygon(ponds, &members[label], tolerance)
+            && let Some(taken) = pond_to_take(ponds, &labels, &members, label, centroid, tolerance)
+        {
             labels[taken] = label;
+            members = members_of(&labels, centroids.len());
         }
     }
-    labels
+    members.retain(|members| !members.is_empty());
+    members
 }
 
-/// The pond that the cluster `label` takes next: none if it forms a polygon or no neighbour can spare one.
-fn pond_to_take(
-    ponds: &[Point],
-    labels: &[usize],
-    label: usize,
-    centroid: Point,
-    tolerance: Tolerance,
-) -> Option<usize> {
-    let positions = |label: usize, except: usize| -> Vec<Point> {
-        (0..ponds.len()).filter(|&pond| labels[pond] == label && pond != except).map(|pond| ponds[pond]).collect()
-    };
-    let own = positions(label, usize::MAX);
-    let is_small = own.len() < MIN_CLUSTER_SIZE;
-    if !is_small && !is_flat(&own, tolerance) {
-        return None;
-    }
-    let mut others: Vec<usize> = (0..ponds.len()).filter(|&pond| labels[pond] != label).collect();
-    others.sort_by(|&a, &b| ponds[a].distance(centroid).total_cmp(&ponds[b].distance(centroid)));
-    others.into_iter().find(|&candidate| {
-        let donor = positions(labels[candidate], usize::MAX);
-        let rest = positions(labels[candidate], candidate);
-        let can_spare = rest.len() >= MIN_CLUSTER_SIZE && (is_flat(&donor, tolerance) || !is_flat(&rest, tolerance));
-        let mut extended = own.clone();
-        extended.push(ponds[candidate]);
-        can_spare && (is_small || !is_flat(&extended, tolerance))
-    })
-}
-
-/// Whether the points span no polygon.
-fn is_flat(points: &[Point], tolerance: Tolerance) -> bool {
-    convex_hull_within(points, tolerance.length).len() < 3
-}
-
-/// The ponds of each label, in input order.
-fn members_of(labels: &[usize]) -> Vec<Vec<usize>> {
-    let mut members = vec![Vec::new(); labels.iter().max().map_or(0, |&last| last + 1)];
+/// The ponds of each cluster, in input order.
+fn members_of(labels: &[usize], num_clusters: usize) -> Vec<Vec<usize>> {
+    let mut members: Vec<Vec<usize>> =
+        (0..num_clusters).map(|_| Vec::with_capacity(2 * labels.len() / num_clusters)).collect();
     for (pond, &label) in labels.iter().enumerate() {
         members[label].push(pond);
     }
     members
 }
 
+/// Whether the ponds of a cluster span a polygon: at least three that do not lie on a line.
+fn is_polygon(ponds: &[Point], members: &[usize], tolerance: Tolerance) -> bool {
+    if members.len() < MIN_CLUSTER_SIZE {
+        return false;
+    }
+    // Nearly always one of the ponds makes a triangle with the first two.
+    let (first, second) = (ponds[members[0]], ponds[members[1]]);
+    let makes_triangle = |&pond: &usize| {
+        let third = ponds[pond];
+        let longest_side = first.distance(second).max(first.distance(third)).max(second.distance(third));
+        cross(first, second, third).abs() > 2.0 * tolerance.length * longest_side
+    };
+    if members[2..].iter().any(makes_triangle) {
+        return true;
+    }
+    let positions: Vec<Point> = members.iter().map(|&pond| ponds[pond]).collect();
+    convex_hull_within(&positions, tolerance.length).len() > 2
+}
+
+/// The pond nearest to the centroid of a cluster that is no polygon, of those that help and that their cluster can spare.
+fn pond_to_take(
+    ponds: &[Point],
+    labels: &[usize],
+    members: &[Vec<usize>],
+    label: usize,
+    centroid: Point,
+    tolerance: Tolerance,
+) -> Option<usize> {
+    let own = &members[label];
+    let helps =
+        |pond: usize| own.len() < MIN_CLUSTER_SIZE || is_polygon(ponds, &[own.as_slice(), &[pond]].concat(), tolerance);
+    let can_be_spared = |pond: usize| {
+        let donor = &members[labels[pond]];
+        let rest: Vec<usize> = donor.iter().copied().filter(|&other| other != pond).collect();
+        rest.len() >= MIN_CLUSTER_SIZE && (is_polygon(ponds, &rest, tolerance) || !is_polygon(ponds, donor, tolerance))
+    };
+    let mut others: Vec<usize> = (0..ponds.len()).filter(|&pond| labels[pond] != label).collect();
+    others.sort_by(|&a, &b| ponds[a].distance(centroid).total_cmp(&ponds[b].distance(centroid)));
+    others.into_iter().find(|&pond| helps(pond) && can_be_spared(pond))
+}
+
 /// Step 5: the seconds from the depot along the corners and back: all legs, and all turns between a start and an end that
-/// head east (Vasquez-Gomez et al. 2018: the time cost of a path).
+/// head east (Vasquez-Gomez et al.: the time cost of a path).
 ///
 /// Quirk kept: a corner that differs from the drone's position in only one coordinate is passed over, so that legs parallel
 /// to an axis cost nothing, and the next leg is reckoned from where the drone was before.
-fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance) -> f64 {
+///
+/// Infinite as soon as it is certain to exceed `limit`.
+fn flight_duration(depot: Point, corners: impl Iterator<Item = Point>, tolerance: Tolerance, limit: f64) -> f64 {
     let east = Point::new(1.0, 0.0);
-    let (mut position, mut direction, mut duration) = (depot, east, 0.0);
+    let (mut position, mut direction) = (depot, east);
+    let (mut turned, mut length) = (Turned::default(), 0.0);
+    let limit_length = limit * SPEED * (1.0 + 1e-12);
     for corner in corners.chain([depot]) {
         let leg = corner - position;
         if leg.x.abs() > tolerance.length && leg.y.abs() > tolerance.length {
-            duration += turn(direction, leg) / TURN_RATE + dot(leg, leg).sqrt() / SPEED;
-            (position, direction) = (corner, leg);
+            let leg_length = dot(leg, leg).sqrt();
+            let heading = Point::new(leg.x / leg_length, leg.y / leg_length);
+            turned.add(direction, heading);
+            length += leg_length;
+            if turned.half_turns * (PI * SPEED / TURN_RATE) + length > limit_length {
+                return f64::INFINITY;
+            }
+            (position, direction) = (corner, heading);
         }
     }
-    duration + turn(direction, east) / TURN_RATE
+    turned.add(direction, east);
+    turned.angle() / TURN_RATE + length / SPEED
 }
 
-/// The angle between two directions, in [0, π].
-fn turn(from: Point, to: Point) -> f64 {
-    let (sine, cosine) = (cross(Point::default(), from, to).abs(), dot(from, to));
-    // Nearly all turns of a sweep are right angles.
-    if cosine.abs() <= 1e-9 * sine { FRAC_PI_2 } else { sine.atan2(cosine) }
+/// A sum of angles in [0, π], without a trigonometric function for each: whole half turns, and the direction of the product
+/// of unit complex numbers in the upper half plane.
+struct Turned {
+    half_turns: f64,
+    rest: Point,
+}
+
+impl Default for Turned {
+    fn default() -> Self {
+        Self { half_turns: 0.0, rest: Point::new(1.0, 0.0) }
+    }
+}
+
+impl Turned {
+    /// Adds the angle between two directions of unit length.
+    fn add(&mut self, from: Point, to: Point) {
+        let (cosine, sine) = (dot(from, to), cross(Point::default(), from, to).abs());
+        // Nearly all turns of a sweep are right angles.
+        if cosine.abs() <= 1e-9 {
+            self.half_turns += 0.5;
+            return;
+        }
+        let (x, y) = (self.rest.x * cosine - self.rest.y * sine, self.rest.x * sine + self.rest.y * cosine);
+        let is_beyond = y < 0.0 || (y == 0.0 && x < 0.0);
+        self.half_turns += f64::from(u8::from(is_beyond));
+        self.rest = if is_beyond { Point::new(-x, -y) } else { Point::new(x, y) };
+    }
+
+    fn angle(&self) -> f64 {
+        self.half_turns * PI + self.rest.y.atan2(self.rest.x)
+    }
 }
 
 /// A back-and-forth path and the frame in which its legs are vertical and horizontal.
@@ -231,9 +294,11 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
     let polygon = ClosedPolygon::new(hull, tolerance);
     let pairs = if hull.len() < 3 { Vec::new() } else { polygon.caliper_pairs() };
     let mut best = SweepPath { frame: Frame::UNTURNED, corners: hull.to_vec() };
-    let mut best_cost = f64::INFINITY;
+    let mut best_duration = f64::INFINITY;
     let mut tried = Vec::with_capacity(pairs.len());
-    let (mut local, mut path, mut corners) = (Vec::new(), Vec::new(), Vec::new());
+    let mut sweeper = Sweeper::new(hull.len(), pitch, tolerance);
+    let mut local = Vec::with_capacity(hull.len());
+    let (mut path, mut corners) = (Vec::with_capacity(MAX_USUAL_CORNERS), Vec::with_capacity(MAX_USUAL_CORNERS));
     for pair in pairs {
         let sweep = polygon.sweep_of_pair(pair);
         if tried.contains(&sweep) {
@@ -243,16 +308,16 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
         let frame = polygon.frame(sweep);
         local.clear();
         local.extend(hull.iter().map(|&corner| frame.enter(corner)));
-        sweep_path(&local, pitch, sweep.starts_up, tolerance, &mut path);
+        sweeper.path(&local, sweep.starts_up, &mut path);
         corners.clear();
         corners.extend(path.iter().map(|&corner| frame.leave(corner)));
-        let forward = flight_duration(depot, corners.iter().copied(), tolerance);
-        let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance);
-        // Costs are sums of the same terms in different order: equal ones differ by rounding.
+        let forward = flight_duration(depot, corners.iter().copied(), tolerance, best_duration);
+        let backward = flight_duration(depot, corners.iter().rev().copied(), tolerance, forward.min(best_duration));
+        // Sums of the same terms in different order: equal ones differ by rounding.
         let is_forward = forward < backward - tolerance.length;
-        let cost = if is_forward { forward } else { backward };
-        if cost < best_cost - tolerance.length {
-            best_cost = cost;
+        let duration = if is_forward { forward } else { backward };
+        if duration < best_duration - tolerance.length {
+            best_duration = duration;
             if !is_forward {
                 corners.reverse();
             }
@@ -272,7 +337,8 @@ pub fn cheapest_path(hull: &[Point], depot: Point, pitch: f64, tolerance: Tolera
 #[must_use]
 pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tolerance) -> Vec<usize> {
     let mut order = Vec::with_capacity(ponds.len());
-    let mut remaining: Vec<(usize, Point)> = ponds.iter().map(|&pond| path.frame.enter(pond)).enumerate().collect();
+    let mut strips = Strips::new(ponds.iter().map(|&pond| path.frame.enter(pond)).zip(0..).collect(), pitch);
+    let mut passed = Vec::with_capacity(ponds.len());
     let (margin_along, margin_across) =
         (pitch / 2.0 + tolerance.length, pitch * 3.0_f64.sqrt() / 2.0 + tolerance.length);
     for leg in path.corners.windows(2) {
@@ -284,36 +350,142 @@ pub fn order_along(path: &SweepPath, ponds: &[Point], pitch: f64, tolerance: Tol
         let is_vertical = (end.y - start.y).abs() > (end.x - start.x).abs();
         let (margin_x, margin_y) =
             if is_vertical { (margin_across, margin_along) } else { (margin_along, margin_across) };
-        let (left, right) = (start.x.min(end.x) - margin_x, start.x.max(end.x) + margin_x);
-        let (bottom, top) = (start.y.min(end.y) - margin_y, start.y.max(end.y) + margin_y);
-        let first = order.len();
-        remaining.retain(|&(index, pond)| {
-            let is_passed = left <= pond.x && pond.x <= right && bottom <= pond.y && pond.y <= top;
-            if is_passed {
-                order.push(index);
-            }
-            !is_passed
-        });
-        sort_along(direction, ponds, &mut order[first..], tolerance);
+        let low = Point::new(start.x.min(end.x) - margin_x, start.y.min(end.y) - margin_y);
+        let high = Point::new(start.x.max(end.x) + margin_x, start.y.max(end.y) + margin_y);
+        passed.clear();
+        strips.take(low, high, &mut passed);
+        sort_along(direction, ponds, &mut passed, tolerance);
+        order.extend(passed.iter().map(|&(.., pond)| pond));
     }
-    order.extend(remaining.into_iter().map(|(index, _)| index));
+    order.extend(strips.into_rest());
     order
 }
 
-/// Sorts indices of ponds along the coordinate axis nearest to a direction; of two equally near, the counter-clockwise one.
-fn sort_along(direction: Point, ponds: &[Point], indices: &mut [usize], tolerance: Tolerance) {
-    let by_x = |a: usize, b: usize| ponds[a].x.total_cmp(&ponds[b].x);
-    let by_y = |a: usize, b: usize| ponds[a].y.total_cmp(&ponds[b].y);
+/// Ponds by the strip a pitch wide that they lie in, so that a leg looks at those near it only.
+struct Strips {
+    left: f64,
+    strips_per_length: f64,
+    /// In the order of the strips, and within a strip in that of the input.
+    ponds: Vec<(Point, usize)>,
+    /// Where each strip begins and ends in `ponds`.
+    ranges: Vec<(usize, usize)>,
+}
+
+impl Strips {
+    fn new(ponds: Vec<(Point, usize)>, pitch: f64) -> Self {
+        let (left, right) = ponds
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(left, right), (pond, _)| (left.min(pond.x), right.max(pond.x)));
+        let max_num_strips = ponds.len().div_ceil(MIN_PONDS_PER_STRIP);
+        let width = pitch.max((right - left) / max_num_strips as f64);
+        let strips_per_length = if width > 0.0 { 1.0 / width } else { 0.0 };
+        let num_strips = ((right - left) * strips_per_length) as usize + 1;
+        let mut strips = Self { left, strips_per_length, ranges: vec![(0, ponds.len()); num_strips], ponds };
+        if num_strips > 1 {
+            strips.sort();
+        }
+        strips
+    }
+
+    /// Counting sort: from input order to that of the strips.
+    fn sort(&mut self) {
+        self.ranges.fill((0, 0));
+        for place in 0..self.ponds.len() {
+            let strip = self.strip(self.ponds[place].0.x);
+            self.ranges[strip].1 += 1;
+        }
+        let mut begin = 0;
+        for range in &mut self.ranges {
+            let end = begin + range.1;
+            *range = (begin, begin);
+            begin = end;
+        }
+        for pond in self.ponds.clone() {
+            let strip = self.strip(pond.0.x);
+            self.ponds[self.ranges[strip].1] = pond;
+            self.ranges[strip].1 += 1;
+        }
+    }
+
+    fn strip(&self, x: f64) -> usize {
+        (((x - self.left) * self.strips_per_length) as usize).min(self.ranges.len() - 1)
+    }
+
+    /// Moves the ponds in an axis-parallel box to `passed`.
+    fn take(&mut self, low: Point, high: Point, passed: &mut Vec<(f64, f64, usize)>) {
+        for strip in self.strip(low.x)..=self.strip(high.x) {
+            let (begin, end) = self.ranges[strip];
+            let mut kept = begin;
+            for place in begin..end {
+                let (pond, index) = self.ponds[place];
+                if (low.x <= pond.x) & (pond.x <= high.x) & (low.y <= pond.y) & (pond.y <= high.y) {
+                    passed.push((0.0, 0.0, index));
+                } else {
+                    self.ponds[kept] = (pond, index);
+                    kept += 1;
+                }
+            }
+            self.ranges[strip].1 = kept;
+        }
+    }
+
+    /// The ponds that were not taken, in input order.
+    fn into_rest(self) -> Vec<usize> {
+        let mut rest: Vec<usize> =
+            self.ranges.iter().flat_map(|&(begin, end)| &self.ponds[begin..end]).map(|&(_, index)| index).collect();
+        rest.sort_unstable();
+        rest
+    }
+}
+
+/// Sorts ponds along the coordinate axis nearest to a direction; of two equally near, the counter-clockwise one.
+///
+/// The two keys of each pond are overwritten.
+fn sort_along(direction: Point, ponds: &[Point], passed: &mut [(f64, f64, usize)], tolerance: Tolerance) {
     let snap = |value: f64| if value.abs() <= tolerance.length { 0.0 } else { value };
     // Left of the diagonal that leads up, and above the one that leads down.
     let (left, above) = (snap(direction.y - direction.x), snap(direction.y + direction.x));
-    if left < 0.0 && above >= 0.0 {
-        indices.sort_by(|&a, &b| by_x(a, b).then(by_y(a, b)));
+    let key: fn(Point) -> (f64, f64) = if left < 0.0 && above >= 0.0 {
+        |pond| (pond.x, pond.y)
     } else if left >= 0.0 && above > 0.0 {
-        indices.sort_by(|&a, &b| by_y(a, b));
+        |pond| (pond.y, 0.0)
     } else if left > 0.0 {
-        indices.sort_by(|&a, &b| by_x(b, a));
+        |pond| (-pond.x, 0.0)
     } else {
-        indices.sort_by(|&a, &b| by_y(b, a));
+        |pond| (-pond.y, 0.0)
+    };
+    for (first, second, pond) in passed.iter_mut() {
+        (*first, *second) = key(ponds[*pond]);
+    }
+    // Farms often list ponds column by column: what is flown down is then sorted already.
+    if left > 0.0 && above <= 0.0 || left <= 0.0 && above < 0.0 {
+        passed.reverse();
+    }
+    passed.sort_unstable_by(|one, other| {
+        one.0.total_cmp(&other.0).then_with(|| one.1.total_cmp(&other.1)).then_with(|| one.2.cmp(&other.2))
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_add_up_to_the_sum_of_their_angles() {
+        // No turn, half turns, right angles on both sides of one, and angles whose sum passes two turns.
+        let headings_deg = [0.0, 0.0, 180.0, 0.0, 90.0, 0.0, 30.0, 200.0, 10.0, 190.0, 10.0, -70.0, 45.0, -135.0, 44.0];
+        let headings: Vec<Point> = headings_deg
+            .iter()
+            .map(|degrees: &f64| degrees.to_radians())
+            .map(|angle| Point::new(angle.cos(), angle.sin()))
+            .collect();
+        let mut turned = Turned::default();
+        let mut sum_deg = 0.0;
+        for (place, legs) in headings.windows(2).enumerate() {
+            turned.add(legs[0], legs[1]);
+            let difference_deg = f64::abs(headings_deg[place + 1] - headings_deg[place]);
+            sum_deg += f64::min(difference_deg, 360.0 - difference_deg);
+            assert!((turned.angle().to_degrees() - sum_deg).abs() < 1e-9, "after turn {place}");
+        }
     }
 }

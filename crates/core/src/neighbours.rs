@@ -2,82 +2,120 @@
 
 use crate::geometry::Point;
 
+/// Points in a leaf at most: fewer cost steps down the tree, more cost distances.
+const MAX_LEAF: usize = 8;
+
 /// A k-d tree (Bentley, Multidimensional binary search trees used for associative searching, Communications of the ACM
-/// 1975). Built in O(n log n) by medians, so that repeated and clustered points cost no more than others.
+/// 1975) with small leaves. Built in O(n log n) by medians, so that repeated and clustered points cost no more than others.
 #[derive(Clone, Debug)]
 pub struct KdTree {
-    points: Vec<Point>,
-    /// Indices of points: the median of a range splits it, by x on even levels and by y on odd ones.
-    order: Vec<usize>,
+    /// Points with their indices; the median of a range splits it, by x on even levels and by y on odd ones.
+    entries: Vec<(Point, u32)>,
+    /// Place in `entries` of each point.
+    places: Vec<u32>,
+}
+
+/// A point near another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// Square of its distance.
+    pub squared_distance: f64,
+    /// Its index.
+    pub index: u32,
 }
 
 impl KdTree {
     /// The tree of the given points.
+    ///
+    /// # Panics
+    /// If there are 2³² points or more.
     #[must_use]
     pub fn new(points: &[Point]) -> Self {
-        let mut order: Vec<usize> = (0..points.len()).collect();
-        split(points, &mut order, true);
-        Self { points: points.to_vec(), order }
+        assert!(u32::try_from(points.len()).is_ok(), "a tree holds fewer than 2^32 points");
+        let mut entries: Vec<(Point, u32)> = points.iter().copied().zip(0..).collect();
+        split(&mut entries, true);
+        let mut places = vec![0; points.len()];
+        for (place, entry) in entries.iter().enumerate() {
+            places[entry.1 as usize] = place as u32;
+        }
+        Self { entries, places }
     }
 
-    /// Indices of the `num_neighbours` points nearest to the point of index `from`, itself left out, with their squared
-    /// distances, nearest first; all of them if there are fewer. O(log n + k²) expected for k neighbours.
-    #[must_use]
-    pub fn nearest(&self, from: usize, num_neighbours: usize) -> Vec<(f64, usize)> {
-        let mut query = Query { from, num_neighbours, found: Vec::with_capacity(num_neighbours + 1) };
-        if num_neighbours > 0 {
-            self.search(&self.order, true, &mut query);
+    /// Fills `found` with the `num_neighbours` points nearest to the point of index `from`, itself left out, nearest first;
+    /// with all of them if there are fewer. O(log n + k²) expected for k neighbours.
+    pub fn nearest(&self, from: usize, num_neighbours: usize, found: &mut Vec<Near>) {
+        found.clear();
+        if num_neighbours == 0 {
+            return;
         }
-        query.found
-    }
-
-    fn search(&self, range: &[usize], is_by_x: bool, query: &mut Query) {
-        let middle = range.len() / 2;
-        let Some(&median) = range.get(middle) else { return };
-        let (here, place) = (self.points[median], self.points[query.from]);
-        let (dx, dy) = (place.x - here.x, place.y - here.y);
-        query.offer(dx * dx + dy * dy, median);
-        let offset = if is_by_x { dx } else { dy };
-        let (below, above) = (&range[..middle], &range[middle + 1..]);
-        let (near, far) = if offset < 0.0 { (below, above) } else { (above, below) };
-        self.search(near, !is_by_x, query);
-        if offset * offset < query.reach() {
-            self.search(far, !is_by_x, query);
-        }
+        let (place, index) = self.entries[self.places[from] as usize];
+        let mut query = Query { place, index, num_neighbours, reach: f64::INFINITY, found };
+        search(&self.entries, true, &mut query);
     }
 }
 
-fn split(points: &[Point], range: &mut [usize], is_by_x: bool) {
-    if range.len() < 2 {
+fn split(range: &mut [(Point, u32)], is_by_x: bool) {
+    if range.len() <= MAX_LEAF {
         return;
     }
     let middle = range.len() / 2;
-    let key = |index: usize| if is_by_x { points[index].x } else { points[index].y };
-    range.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
+    range.select_nth_unstable_by(middle, |a, b| {
+        let (first, second) = if is_by_x { (a.0.x, b.0.x) } else { (a.0.y, b.0.y) };
+        first.total_cmp(&second).then(a.1.cmp(&b.1))
+    });
     let (below, above) = range.split_at_mut(middle);
-    split(points, below, !is_by_x);
-    split(points, &mut above[1..], !is_by_x);
+    split(below, !is_by_x);
+    split(&mut above[1..], !is_by_x);
 }
 
-struct Query {
-    from: usize,
+struct Query<'a> {
+    place: Point,
+    index: u32,
     num_neighbours: usize,
-    found: Vec<(f64, usize)>,
+    /// Squared distance from which on nothing is of interest.
+    reach: f64,
+    found: &'a mut Vec<Near>,
 }
 
-impl Query {
-    fn offer(&mut self, squared_distance: f64, index: usize) {
-        if index == self.from || squared_distance >= self.reach() {
+fn search(range: &[(Point, u32)], is_by_x: bool, query: &mut Query<'_>) {
+    if range.len() <= MAX_LEAF {
+        for &(point, index) in range {
+            query.offer(point, index);
+        }
+        return;
+    }
+    let middle = range.len() / 2;
+    let (below, above) = (&range[..middle], &range[middle + 1..]);
+    let (median, index) = range[middle];
+    query.offer(median, index);
+    let offset = if is_by_x { query.place.x - median.x } else { query.place.y - median.y };
+    let (near, far) = if offset < 0.0 { (below, above) } else { (above, below) };
+    search(near, !is_by_x, query);
+    if offset * offset < query.reach {
+        search(far, !is_by_x, query);
+    }
+}
+
+impl Query<'_> {
+    fn offer(&mut self, point: Point, index: u32) {
+        let (dx, dy) = (point.x - self.place.x, point.y - self.place.y);
+        let squared_distance = dx * dx + dy * dy;
+        if squared_distance >= self.reach || index == self.index {
             return;
         }
-        let place = self.found.partition_point(|&(other, _)| other <= squared_distance);
-        self.found.insert(place, (squared_distance, index));
-        self.found.truncate(self.num_neighbours);
-    }
-
-    /// Squared distance from which on nothing is of interest.
-    fn reach(&self) -> f64 {
-        if self.found.len() < self.num_neighbours { f64::INFINITY } else { self.found[self.num_neighbours - 1].0 }
+        let near = Near { squared_distance, index };
+        if self.found.len() < self.num_neighbours {
+            self.found.push(near);
+        }
+        let mut place = self.found.len() - 1;
+        while place > 0 && self.found[place - 1].squared_distance > squared_distance {
+            self.found[place] = self.found[place - 1];
+            place -= 1;
+        }
+        self.found[place] = near;
+        if self.found.len() == self.num_neighbours {
+            self.reach = self.found[self.num_neighbours - 1].squared_distance;
+        }
     }
 }
 
@@ -91,6 +129,7 @@ mod tests {
         fn as_near_as_by_trying_all(places in prop::collection::vec((0u8..20, 0u8..20), 1..60), num in 0usize..12) {
             let points: Vec<Point> = places.iter().map(|&(x, y)| Point::new(x.into(), y.into())).collect();
             let tree = KdTree::new(&points);
+            let mut found = Vec::new();
             for from in 0..points.len() {
                 let squared = |other: usize| {
                     let (dx, dy) = (points[from].x - points[other].x, points[from].y - points[other].y);
@@ -99,9 +138,11 @@ mod tests {
                 let mut all: Vec<f64> = (0..points.len()).filter(|&other| other != from).map(squared).collect();
                 all.sort_by(f64::total_cmp);
                 all.truncate(num);
-                let found = tree.nearest(from, num);
-                prop_assert!(found.iter().all(|&(distance, index)| index != from && distance == squared(index)));
-                prop_assert_eq!(found.iter().map(|&(distance, _)| distance).collect::<Vec<f64>>(), all);
+                tree.nearest(from, num, &mut found);
+                for near in &found {
+                    prop_assert!(near.index as usize != from && near.squared_distance == squared(near.index as usize));
+                }
+                prop_assert_eq!(found.iter().map(|near| near.squared_distance).collect::<Vec<f64>>(), all);
             }
         }
     }

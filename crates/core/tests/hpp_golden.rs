@@ -1,15 +1,18 @@
 //! Steps 3 to 6 of HPP against traces of its authors' MATLAB code, run under Octave: hull in, pairs and order out.
 //!
-//! The traces lie beside the repository, in `../shared/data`; without them the test says so and passes.
+//! The traces lie beside the repository, in `../shared/data`; without them the test says so and passes. They are met with
+//! [`Tolerance::EXACT`] only: the authors' code lets rounding decide which legs are parallel to an axis and cost nothing.
+//! Two of the 90 orders hang on the last bit of a fused multiplication and addition, which we do not use.
 
 use pondhop_core::geometry::Point;
 use pondhop_core::hpp::{cheapest_path, order_along};
 use pondhop_core::sweep::{ClosedPolygon, Tolerance};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// The authors' unit square in their units.
+/// The side of the authors' unit square in their units.
 const SIDE: f64 = 1000.0;
 
 #[derive(Deserialize)]
@@ -24,7 +27,6 @@ struct TracedCluster {
     hull: Vec<[f64; 2]>,
     /// 1-based rows of `hull`.
     pairs: Vec<[usize; 2]>,
-    path: Vec<[f64; 2]>,
     order: Vec<usize>,
 }
 
@@ -39,7 +41,7 @@ fn scaled([x, y]: [f64; 2]) -> Point {
     Point::new(x * SIDE, y * SIDE)
 }
 
-fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> T {
+fn read<T: DeserializeOwned>(path: &Path) -> T {
     let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
@@ -48,11 +50,9 @@ fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> T {
 fn traced_pitch(trace: &Trace, rounded: f64) -> f64 {
     let coordinates = trace.clusters.iter().flat_map(|cluster| cluster.hull.iter().flatten());
     coordinates
-        .filter_map(|&coordinate| {
-            let multiple = (coordinate / rounded).round();
-            (multiple >= 1.0 && (multiple as u64).is_power_of_two()).then_some(coordinate / multiple)
-        })
-        .next()
+        .map(|&coordinate| (coordinate, (coordinate / rounded).round()))
+        .find(|&(_, multiple)| multiple >= 1.0 && (multiple as u64).is_power_of_two())
+        .map(|(coordinate, multiple)| coordinate / multiple)
         .expect("a hull coordinate that is a power of two of the pitch")
 }
 
@@ -60,7 +60,7 @@ fn traced_pitch(trace: &Trace, rounded: f64) -> f64 {
 fn the_authors_pairs_and_orders_are_reproduced() {
     let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     if !data.is_dir() {
-        eprintln!("skipped: no traces in {}", data.display());
+        eprintln!("skipped: there is no {}, where the traces of the authors' code lie", data.display());
         return;
     }
     let (mut num_clusters, mut num_pairs_equal, mut num_orders_equal) = (0, 0, 0);
@@ -70,38 +70,22 @@ fn the_authors_pairs_and_orders_are_reproduced() {
         for trace in &traces {
             let farm = &farms[trace.instance];
             let pitch = traced_pitch(trace, farm.spacing * SIDE);
-            let tolerance = if std::env::var("TOL").is_ok() { Tolerance::of_side(SIDE) } else { Tolerance::EXACT };
-            for (index, traced) in trace.clusters.iter().enumerate() {
-                let hull: Vec<Point> = traced.hull.iter().map(|&[x, y]| Point::new(x, y)).collect();
-                let corners = &hull[..hull.len() - 1];
-                let pairs: Vec<[usize; 2]> = ClosedPolygon::new(corners, tolerance)
-                    .caliper_pairs()
-                    .iter()
-                    .map(|&(i, j)| [i + 1, j + 1])
-                    .collect();
-
-                let path = cheapest_path(corners, scaled(farm.depot), pitch, tolerance);
+            for traced in &trace.clusters {
+                let rows: Vec<Point> = traced.hull.iter().map(|&[x, y]| Point::new(x, y)).collect();
+                let hull = &rows[..rows.len() - 1];
+                let pairs = ClosedPolygon::new(hull, Tolerance::EXACT).caliper_pairs();
+                let pairs: Vec<[usize; 2]> = pairs.into_iter().map(|(i, j)| [i + 1, j + 1]).collect();
+                let path = cheapest_path(hull, scaled(farm.depot), pitch, Tolerance::EXACT);
                 let members: Vec<usize> = BTreeSet::from_iter(traced.order.iter().copied()).into_iter().collect();
                 let ponds: Vec<Point> = members.iter().map(|&pond| scaled(farm.ponds[pond])).collect();
-                let order: Vec<usize> =
-                    order_along(&path, &ponds, pitch, tolerance).into_iter().map(|index| members[index]).collect();
+                let order = order_along(&path, &ponds, pitch, Tolerance::EXACT);
+                let order: Vec<usize> = order.into_iter().map(|index| members[index]).collect();
                 num_clusters += 1;
                 num_pairs_equal += usize::from(pairs == traced.pairs);
                 num_orders_equal += usize::from(order == traced.order);
-                if pairs != traced.pairs || order != traced.order {
-                    eprintln!(
-                        "{name}[{}] cluster {index}: pairs {} order {}\n path {:?}\n   vs {:?}",
-                        trace.instance,
-                        pairs == traced.pairs,
-                        order == traced.order,
-                        path.corners.iter().map(|p| [p.x.round(), p.y.round()]).collect::<Vec<_>>(),
-                        traced.path.iter().map(|p| [p[0].round(), p[1].round()]).collect::<Vec<_>>()
-                    );
-                }
             }
         }
     }
-    eprintln!("{num_clusters} {num_pairs_equal} {num_orders_equal}");
     assert_eq!((num_clusters, num_pairs_equal), (90, 90));
-    assert!(num_orders_equal >= 88, "{num_orders_equal} of 90 orders");
+    assert!(num_orders_equal >= 88, "{num_orders_equal} of 90 orders are the authors'");
 }

@@ -10,6 +10,7 @@ mod generate;
 mod hpp;
 mod plan;
 mod problem;
+mod search;
 mod separation;
 mod territory;
 mod travel;
@@ -31,6 +32,8 @@ mod _core {
     use crate::plan::Plan;
     #[pymodule_export]
     use crate::problem::Problem;
+    #[pymodule_export]
+    use crate::search::search;
     #[pymodule_export]
     use crate::separation::{Separation, separation};
     #[pymodule_export]

@@ -10,7 +10,7 @@ use super::budget::{Budget, Progress};
 use super::network::Network;
 use super::recreate::{Objective, Recreate};
 use super::ruin::Ruin;
-use super::state::{State, Touched};
+use super::state::{Difference, State, Touched};
 use crate::random::Random;
 
 /// Share of the steps that start on the longest route.
@@ -59,36 +59,33 @@ pub(crate) struct Chain<A> {
     airspace: A,
     touched: Touched,
     /// What differs between `current` and `best`.
-    since_best: Touched,
+    since_best: Difference,
 }
 
 impl<A: Airspace> Chain<A> {
-    pub fn new(state: State, objective: Objective, seed: u64, airspace: A) -> Self {
-        let mut random = Random::new(seed);
-        let recreate = Recreate::new(&mut random);
+    pub fn new(network: &Network, state: State, objective: Objective, seed: u64, airspace: A) -> Self {
         let value = objective.value(&state);
         Self {
             best: state.clone(),
             best_value: value,
             num_iterations: 0,
             objective,
-            random,
+            random: Random::new(seed),
             current: state.clone(),
             current_value: value,
             trial: state,
             ruin: Ruin::default(),
-            recreate,
+            recreate: Recreate::default(),
             airspace,
             touched: Touched::default(),
-            since_best: Touched::default(),
+            since_best: Difference::new(network),
         }
     }
 
     /// Goes on from the best plan, judged by `objective`.
     pub fn restart(&mut self, objective: Objective) {
-        self.current.copy_touched(&self.best, &self.since_best);
-        self.trial.copy_touched(&self.best, &self.since_best);
-        self.since_best.clear();
+        self.since_best.copy_to(&mut self.current, &self.best);
+        self.since_best.settle(&mut self.trial, &self.best);
         self.airspace.load(&self.best);
         self.objective = objective;
         self.best_value = objective.value(&self.best);
@@ -138,7 +135,7 @@ impl<A: Airspace> Chain<A> {
         );
         let value = if is_complete { self.objective.value(&self.trial) } else { f64::INFINITY };
         if value < threshold {
-            self.accept(network, value);
+            self.accept(value);
         } else {
             self.trial.copy_touched(&self.current, &self.touched);
             self.airspace.undo();
@@ -146,18 +143,15 @@ impl<A: Airspace> Chain<A> {
         self.touched.clear();
     }
 
-    fn accept(&mut self, network: &Network, value: f64) {
+    fn accept(&mut self, value: f64) {
         self.current.copy_touched(&self.trial, &self.touched);
         self.current_value = value;
         self.airspace.keep();
-        self.since_best.append(&self.touched);
+        self.since_best.add(&self.touched);
         if value < self.best_value {
             self.best_value = value;
-            self.best.copy_touched(&self.trial, &self.since_best);
-            self.since_best.clear();
+            self.since_best.settle(&mut self.best, &self.trial);
             self.objective.target = self.objective.target.min(self.trial.max_route_cost());
-        } else if self.since_best.nodes.len() > 4 * network.num_visits {
-            self.since_best.remove_repetitions();
         }
     }
 

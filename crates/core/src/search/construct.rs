@@ -35,9 +35,10 @@ impl<'a> Sweep<'a> {
         Self { network, visits: keyed.into_iter().map(|entry| entry.1).collect(), curve_keys: curve_keys(points) }
     }
 
-    /// Routes from sectors whose first begins at `rotation` (0 to 1) of a mean sector, balanced by the length of their curves.
-    pub fn sectors(&self, rotation: f64) -> Vec<Vec<u32>> {
-        let (num_visits, num_routes) = (self.network.num_visits, self.network.num_routes);
+    /// `num_routes` routes from sectors whose first begins at `rotation` (0 to 1) of a mean sector, balanced by the length of
+    /// their curves.
+    pub fn sectors(&self, rotation: f64, num_routes: usize) -> Vec<Vec<u32>> {
+        let num_visits = self.network.num_visits;
         let start = (rotation * num_visits as f64 / num_routes as f64) as usize;
         let mut ends: Vec<usize> = (0..=num_routes).map(|route| route * num_visits / num_routes).collect();
         let mut routes = self.tour_sectors(start, &ends);

@@ -96,12 +96,10 @@ const RACE_END: f64 = 0.25;
 const MEETINGS: [f64; 2] = [0.5, 0.7];
 /// Share of the effort at which the work on the longest route ends.
 const MAX_END: f64 = 0.88;
-/// The same where the total is the goal: the balanced plan is only a start.
-const MAX_END_BEFORE_TOTAL: f64 = 0.3;
 /// Starts in a race, at most.
-const MAX_STARTS: usize = 8;
+const MAX_STARTS: usize = 16;
 /// Steps per visit and start below which a race gains less than it costs.
-const RACE_STEPS_PER_VISIT: f64 = 50.0;
+const RACE_STEPS_PER_VISIT: f64 = 25.0;
 /// Steps that take as long as making a start, per visit.
 const START_STEPS_PER_VISIT: f64 = 0.3;
 /// Weight of the mean route beside the longest: without it, shortening any other route would not count.
@@ -120,7 +118,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);
     if options.start.is_none() {
-        let rough = Sweep::new(&network).sectors(0.0);
+        let rough = Sweep::new(&network).sectors(0.0, network.num_routes);
         if budget.is_time_over() {
             return Outcome { routes: to_indices(rough), num_iterations: 0 };
         }
@@ -157,15 +155,17 @@ struct Search<'a> {
 impl Search<'_> {
     /// One thread's search: race, longest route, total.
     fn run(&self, thread: usize) -> Chain<SharedAirspace> {
-        let mut chain = match self.options.start {
-            Some(routes) => self.chain_from(&to_nodes(routes), thread as u64),
-            None => self.race(thread),
+        let mut chain = match (self.options.start, self.options.goal) {
+            (Some(routes), _) => self.chain_from(&to_nodes(routes), thread as u64),
+            (None, Goal::Max) => self.race(thread),
+            (None, Goal::Total) => self.fewest_routes(thread),
         };
-        let max_end = if self.options.goal == Goal::Max { MAX_END } else { MAX_END_BEFORE_TOTAL };
         let floor = self.network.farthest_visit_bound() * (1.0 + 1e-12);
+        let max_end = if chain.best.max_route_cost() <= self.goal_cap() { 0.0 } else { MAX_END };
         let schedule = self.schedule(&chain, max_end, MAX_HEAT);
-        for until in MEETINGS.into_iter().filter(|&meeting| meeting < max_end).chain([max_end]) {
-            chain.anneal(self.network, self.budget, &schedule, until, floor);
+        // Every thread comes to every meeting, also one that has nothing left to do, or the others would wait for ever.
+        for until in MEETINGS.into_iter().chain([MAX_END]) {
+            chain.anneal(self.network, self.budget, &schedule, until.min(max_end), floor);
             self.meeting.share_best(thread, &mut chain);
         }
         chain.restart(self.total_objective(&chain.best));
@@ -178,7 +178,7 @@ impl Search<'_> {
     fn race(&self, thread: usize) -> Chain<SharedAirspace> {
         let sweep = Sweep::new(self.network);
         let start = |rotation: f64, stream: u64| {
-            let mut routes = sweep.sectors(rotation);
+            let mut routes = sweep.sectors(rotation, self.network.num_routes);
             improve_routes(self.network, self.budget, &mut routes);
             self.chain_from(&routes, stream)
         };
@@ -216,6 +216,27 @@ impl Search<'_> {
         winner
     }
 
+    /// Up to which cost the longest route does not matter.
+    fn goal_cap(&self) -> f64 {
+        if self.options.goal == Goal::Max { 0.0 } else { self.network.max_route_cost }
+    }
+
+    /// A start for the least total: as few routes as the drones' limit allows, because every route costs two depot legs, and no
+    /// later step is wide enough to give up a long one.
+    fn fewest_routes(&self, thread: usize) -> Chain<SharedAirspace> {
+        let sweep = Sweep::new(self.network);
+        let mut num_routes = 1;
+        loop {
+            let mut routes = sweep.sectors(0.0, num_routes);
+            improve_routes(self.network, self.budget, &mut routes);
+            let chain = self.chain_from(&routes, thread as u64);
+            if num_routes == self.network.num_routes || chain.best.max_route_cost() <= self.goal_cap() {
+                return chain;
+            }
+            num_routes += 1;
+        }
+    }
+
     fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain<SharedAirspace> {
         let state = State::new(self.network, routes);
         let objective = Objective {
@@ -224,16 +245,15 @@ impl Search<'_> {
             cap: f64::INFINITY,
             target: state.max_route_cost(),
         };
-        Chain::new(state, objective, self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP)), SharedAirspace)
+        let seed = self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP));
+        Chain::new(self.network, state, objective, seed, SharedAirspace)
     }
 
     /// Only the total counts, while no route may outgrow the longest one, and the slack it is given.
     fn total_objective(&self, state: &State) -> Objective {
-        let longest = state.max_route_cost() * (1.0 + self.options.slack);
-        let cap = match self.options.goal {
-            Goal::Max => longest,
-            Goal::Total => longest.max(self.network.max_route_cost),
-        };
+        // Taking a visit out and putting it back changes the last bits of a route's cost.
+        let longest = state.max_route_cost() * (1.0 + self.options.slack) * (1.0 + 1e-12);
+        let cap = longest.max(self.goal_cap());
         Objective { max_weight: 0.0, total_weight: 1.0, cap, target: cap }
     }
 

@@ -10,8 +10,10 @@ use super::ruin::Ruin;
 use super::state::{ABSENT, State, Touched};
 use crate::random::Random;
 
-/// One place in a hundred is passed over, so that a step can leave the greedy path.
-const BLINK_RATE: f64 = 0.01;
+/// One place in 2⁸ is passed over, so that a step can leave the greedy path.
+const PLACE_BLINK_BITS: u32 = 8;
+/// One route in 2⁶ is passed over whole, without which a visit would never leave a short route for an empty one.
+const ROUTE_BLINK_BITS: u32 = 6;
 /// What a unit of overflow over the target costs, beside the added length.
 const OVERFLOW_PRICE: f64 = 10.0;
 
@@ -36,10 +38,9 @@ impl Objective {
 }
 
 /// Buffers of the insertion.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Recreate {
     keyed: Vec<(f64, u32)>,
-    places_to_blink: u32,
 }
 
 struct Place {
@@ -50,10 +51,6 @@ struct Place {
 }
 
 impl Recreate {
-    pub fn new(random: &mut Random) -> Self {
-        Self { keyed: Vec::new(), places_to_blink: draw_blink(random) }
-    }
-
     /// Inserts what `ruin` removed. Returns false, with visits still absent, once the result is sure to exceed `threshold`.
     #[allow(clippy::too_many_arguments)]
     pub fn insert(
@@ -69,9 +66,8 @@ impl Recreate {
     ) -> bool {
         self.order(network, &ruin.removed, random);
         let mut longest: f64 = 0.0;
-        for index in 0..self.keyed.len() {
-            let visit = self.keyed[index].1;
-            let Some(place) = self.cheapest_place(network, state, visit, objective, airspace, random) else {
+        for &(_, visit) in &self.keyed {
+            let Some(place) = cheapest_place(network, state, visit, objective, airspace, random.bits()) else {
                 return false;
             };
             state.insert(visit, place.after, place.leg_in, place.leg_out, place.added, touched);
@@ -106,93 +102,78 @@ impl Recreate {
             self.keyed[place] = (key, visit);
         }
     }
-
-    #[inline]
-    fn is_blink(&mut self, random: &mut Random) -> bool {
-        self.places_to_blink -= 1;
-        if self.places_to_blink == 0 {
-            self.places_to_blink = draw_blink(random);
-            return true;
-        }
-        false
-    }
-
-    fn cheapest_place(
-        &mut self,
-        network: &Network,
-        state: &State,
-        visit: u32,
-        objective: &Objective,
-        airspace: &mut impl Airspace,
-        random: &mut Random,
-    ) -> Option<Place> {
-        let service = network.services[visit as usize];
-        let mut best_price = f64::INFINITY;
-        let mut best = Place { after: ABSENT, leg_in: 0.0, leg_out: 0.0, added: 0.0 };
-        let mut consider = |best_price: &mut f64,
-                            after: u32,
-                            leg_in: f64,
-                            leg_out: f64,
-                            route: u32,
-                            leg_removed: f64| {
-            let added = leg_in + leg_out - leg_removed + service;
-            if added >= *best_price {
-                return;
-            }
-            let cost = state.route_costs[route as usize] + added;
-            let overflow = cost - objective.target;
-            let price = if overflow > 0.0 { added + OVERFLOW_PRICE * overflow.min(added) } else { added };
-            if price < *best_price && cost <= objective.cap && airspace.admits(visit, route) && !self.is_blink(random) {
-                *best_price = price;
-                best = Place { after, leg_in, leg_out, added };
-            }
-        };
-        let mut reach = 0.0;
-        for neighbour in network.neighbours(visit) {
-            let (leg, near) = (neighbour.leg, neighbour.node);
-            reach = leg;
-            let node = state.nodes[near as usize];
-            if node.route == ABSENT {
-                continue;
-            }
-            // A place whose other end is nearer than `near` was tried from there, so the other leg is at least as long.
-            let least = 2.0 * leg + service;
-            if least - node.leg_after < best_price {
-                let leg_out = network.leg(visit, node.next);
-                consider(&mut best_price, near, leg, leg_out, node.route, node.leg_after);
-            }
-            let leg_removed = state.nodes[node.previous as usize].leg_after;
-            if least - leg_removed < best_price {
-                let leg_in = network.leg(node.previous, visit);
-                consider(&mut best_price, node.previous, leg_in, leg, node.route, leg_removed);
-            }
-        }
-        // Beside a near neighbour the ends of the routes were tried too; others are at least `reach` away.
-        let depot_leg = network.depot_legs[visit as usize];
-        let least = depot_leg + reach + service;
-        for route in 0..network.num_routes as u32 {
-            let depot = network.num_visits as u32 + route;
-            let node = state.nodes[depot as usize];
-            if least - node.leg_after < best_price || node.next == depot {
-                consider(&mut best_price, depot, depot_leg, network.leg(visit, node.next), route, node.leg_after);
-            }
-            let leg_removed = state.nodes[node.previous as usize].leg_after;
-            if least - leg_removed < best_price {
-                consider(
-                    &mut best_price,
-                    node.previous,
-                    network.leg(node.previous, visit),
-                    depot_leg,
-                    route,
-                    leg_removed,
-                );
-            }
-        }
-        (best.after != ABSENT).then_some(best)
-    }
 }
 
-/// How many places until the next blink: uniform with the right mean, which is all that the source asks of it.
-fn draw_blink(random: &mut Random) -> u32 {
-    1 + random.below((2.0 / BLINK_RATE) as usize) as u32
+/// Finds where `visit` costs least; nowhere if every place tried would break the cap.
+///
+/// A place is tried from both of its ends: `salt` decides for a place, not for a trial, whether it is passed over.
+fn cheapest_place(
+    network: &Network,
+    state: &State,
+    visit: u32,
+    objective: &Objective,
+    airspace: &mut impl Airspace,
+    salt: u64,
+) -> Option<Place> {
+    let service = network.services[visit as usize];
+    let mut best_price = f64::INFINITY;
+    let mut best = Place { after: ABSENT, leg_in: 0.0, leg_out: 0.0, added: 0.0 };
+    let mut consider = |best_price: &mut f64, after: u32, leg_in: f64, leg_out: f64, route: u32, leg_removed: f64| {
+        let added = leg_in + leg_out - leg_removed + service;
+        if added >= *best_price {
+            return;
+        }
+        let cost = state.route_costs[route as usize] + added;
+        let overflow = cost - objective.target;
+        let price = if overflow > 0.0 { added + OVERFLOW_PRICE * overflow.min(added) } else { added };
+        if price < *best_price
+            && cost <= objective.cap
+            && !is_blink(after, salt, PLACE_BLINK_BITS)
+            && !is_blink(!route, salt, ROUTE_BLINK_BITS)
+            && airspace.admits(visit, route)
+        {
+            *best_price = price;
+            best = Place { after, leg_in, leg_out, added };
+        }
+    };
+    let mut reach = 0.0;
+    for neighbour in network.neighbours(visit) {
+        let (leg, near) = (neighbour.leg, neighbour.node);
+        reach = leg;
+        let node = state.nodes[near as usize];
+        if node.route == ABSENT {
+            continue;
+        }
+        // A place whose other end is nearer than `near` was tried from there, so the other leg is at least as long.
+        let least = 2.0 * leg + service;
+        if least - node.leg_after < best_price {
+            let leg_out = network.leg(visit, node.next);
+            consider(&mut best_price, near, leg, leg_out, node.route, node.leg_after);
+        }
+        let leg_removed = state.nodes[node.previous as usize].leg_after;
+        if least - leg_removed < best_price {
+            let leg_in = network.leg(node.previous, visit);
+            consider(&mut best_price, node.previous, leg_in, leg, node.route, leg_removed);
+        }
+    }
+    // Beside a near neighbour the ends of the routes were tried too; others are at least `reach` away.
+    let depot_leg = network.depot_legs[visit as usize];
+    let least = depot_leg + reach + service;
+    for route in 0..network.num_routes as u32 {
+        let depot = network.num_visits as u32 + route;
+        let node = state.nodes[depot as usize];
+        if least - node.leg_after < best_price || node.next == depot {
+            consider(&mut best_price, depot, depot_leg, network.leg(visit, node.next), route, node.leg_after);
+        }
+        let leg_removed = state.nodes[node.previous as usize].leg_after;
+        if least - leg_removed < best_price {
+            consider(&mut best_price, node.previous, network.leg(node.previous, visit), depot_leg, route, leg_removed);
+        }
+    }
+    (best.after != ABSENT).then_some(best)
+}
+
+/// Whether a place or route is passed over this time: whether the top bits of a multiplicative hash are 0.
+fn is_blink(place: u32, salt: u64, num_bits: u32) -> bool {
+    (salt ^ u64::from(place)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (u64::BITS - num_bits) == 0
 }

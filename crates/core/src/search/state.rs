@@ -30,7 +30,7 @@ pub(crate) struct State {
     pub total: f64,
 }
 
-/// Which parts of a state differ from the state it was copied from; members may repeat.
+/// Which parts of a state one step touched; members may repeat.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touched {
     pub nodes: Vec<u32>,
@@ -42,17 +42,55 @@ impl Touched {
         self.nodes.clear();
         self.routes.clear();
     }
+}
 
-    pub fn append(&mut self, other: &Self) {
-        self.nodes.extend_from_slice(&other.nodes);
-        self.routes.extend_from_slice(&other.routes);
+/// What differs between two states, gathered over many steps; every member once.
+#[derive(Clone, Debug)]
+pub(super) struct Difference {
+    members: Touched,
+    has_node: Vec<bool>,
+    has_route: Vec<bool>,
+}
+
+impl Difference {
+    pub fn new(network: &Network) -> Self {
+        let members = Touched::default();
+        Self { members, has_node: vec![false; network.points.len()], has_route: vec![false; network.num_routes] }
     }
 
-    pub fn remove_repetitions(&mut self) {
-        for members in [&mut self.nodes, &mut self.routes] {
-            members.sort_unstable();
-            members.dedup();
+    pub fn add(&mut self, touched: &Touched) {
+        for (added, has, members) in [
+            (&touched.nodes, &mut self.has_node, &mut self.members.nodes),
+            (&touched.routes, &mut self.has_route, &mut self.members.routes),
+        ] {
+            for &member in added {
+                if !has[member as usize] {
+                    has[member as usize] = true;
+                    members.push(member);
+                }
+            }
         }
+    }
+
+    /// Copies to `state` what differs from `other`.
+    pub fn copy_to(&self, state: &mut State, other: &State) {
+        state.copy_touched(other, &self.members);
+    }
+
+    /// The same, after which nothing differs any more.
+    pub fn settle(&mut self, state: &mut State, other: &State) {
+        state.copy_touched(other, &self.members);
+        self.clear();
+    }
+
+    pub fn clear(&mut self) {
+        for &node in &self.members.nodes {
+            self.has_node[node as usize] = false;
+        }
+        for &route in &self.members.routes {
+            self.has_route[route as usize] = false;
+        }
+        self.members.clear();
     }
 }
 
@@ -68,12 +106,13 @@ impl State {
             total: 0.0,
         };
         for route in 0..network.num_routes {
-            state.load(network, route, routes.get(route).map_or(&[], Vec::as_slice));
+            state.replace_route(network, route, routes.get(route).map_or(&[], Vec::as_slice));
         }
         state
     }
 
-    fn load(&mut self, network: &Network, route: usize, visits: &[u32]) {
+    /// Makes `route` visit `visits`, whatever it did before: O(visits).
+    pub fn replace_route(&mut self, network: &Network, route: usize, visits: &[u32]) {
         let depot = (network.num_visits + route) as u32;
         let mut last = depot;
         let mut cost = 0.0;
@@ -86,9 +125,9 @@ impl State {
             self.nodes[node as usize].route = route as u32;
             last = node;
         }
+        self.total += cost - self.route_costs[route];
         self.route_costs[route] = cost;
         self.route_sizes[route] = visits.len() as u32;
-        self.total += cost;
     }
 
     /// Visits per route in flying order; empty routes are left out.

@@ -64,7 +64,7 @@ pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<u
         cap: f64::INFINITY,
         target: state.max_route_cost(),
     };
-    let mut chain = Chain::new(state, objective, seed, Hulls::new(network, &tours));
+    let mut chain = Chain::new(network, state, objective, seed, Hulls::new(network, &tours));
     anneal(network, &budget, &mut chain, MAX_END, MAX_HEAT);
     let longest = chain.best.max_route_cost();
     chain.restart(Objective { max_weight: 0.0, total_weight: 1.0, cap: longest, target: longest });

@@ -1,0 +1,177 @@
+//! What every plan of the search must be, on any input.
+
+use pondhop_core::bound::lower_bound;
+use pondhop_core::evaluate::evaluate;
+use pondhop_core::generate::{Variant, generate};
+use pondhop_core::geometry::Point;
+use pondhop_core::plan::Plan;
+use pondhop_core::problem::{Depot, Problem, VehicleType, Visit};
+use pondhop_core::search::{Goal, Options, Progress, solve};
+use proptest::prelude::*;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+fn plan(problem: &Problem, options: &Options<'_>) -> Plan {
+    let outcome = solve(problem, options);
+    assert!(outcome.routes.iter().all(|route| !route.is_empty()));
+    evaluate(problem, &outcome.routes).unwrap()
+}
+
+fn iterations(max_iterations: u64) -> Options<'static> {
+    Options { max_iterations: Some(max_iterations), ..Options::default() }
+}
+
+/// The least longest route, and the least total among plans that have it, by trying every plan.
+fn optimum(problem: &Problem) -> (f64, f64) {
+    fn extend(problem: &Problem, routes: &mut Vec<Vec<usize>>, visit: usize, best: &mut (f64, f64)) {
+        if visit == problem.num_visits() {
+            let plan = evaluate(problem, routes).unwrap();
+            let (longest, total) = (plan.makespan(), plan.routes.iter().map(|route| route.duration).sum::<f64>());
+            if longest < best.0 - 1e-9 || (longest < best.0 + 1e-9 && total < best.1) {
+                *best = (longest, total);
+            }
+            return;
+        }
+        let mut has_tried_empty = false;
+        for route in 0..routes.len() {
+            // Empty routes are alike.
+            if routes[route].is_empty() && std::mem::replace(&mut has_tried_empty, true) {
+                continue;
+            }
+            for place in 0..=routes[route].len() {
+                routes[route].insert(place, visit);
+                extend(problem, routes, visit + 1, best);
+                routes[route].remove(place);
+            }
+        }
+    }
+    let mut best = (f64::INFINITY, f64::INFINITY);
+    extend(problem, &mut vec![vec![]; problem.vehicle_type().num_available], 0, &mut best);
+    best
+}
+
+fn points(max_size: usize) -> impl Strategy<Value = Vec<Point>> {
+    prop::collection::vec((-3.0..3.0f64, -3.0..3.0f64), 1..=max_size)
+        .prop_map(|places| places.into_iter().map(|(x, y)| Point::new(x, y)).collect())
+}
+
+/// Ponds that coincide, lie in lines, and lie on the depot.
+fn lattice_points(max_size: usize) -> impl Strategy<Value = Vec<Point>> {
+    prop::collection::vec((0..4u8, 0..3u8), 1..=max_size)
+        .prop_map(|places| places.into_iter().map(|(x, y)| Point::new(x.into(), y.into())).collect())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn every_pond_once_on_any_farm(
+        ponds in prop_oneof![points(60), lattice_points(60)],
+        num_routes in 1..9usize, seed in any::<u64>(), num_iterations in 1..400u64, num_threads in 1..3usize,
+    ) {
+        let problem = Problem::research(Point::new(1.0, 1.0), &ponds, num_routes).unwrap();
+        let options = Options { seed, num_threads, ..iterations(num_iterations) };
+        let plan = plan(&problem, &options);
+        prop_assert!(plan.is_feasible(), "{:?}", plan.violations);
+        prop_assert!(lower_bound(&problem) <= plan.max_route_length() * (1.0 + 1e-9));
+    }
+
+    #[test]
+    fn the_optimum_of_small_farms(
+        ponds in prop_oneof![points(6), lattice_points(6)],
+        services in prop::collection::vec(0.0..2.0f64, 6), leg_stop_duration in 0.0..1.0f64, num_routes in 1..4usize,
+    ) {
+        let visits = ponds.iter().zip(&services).map(|(&position, &service_duration)| Visit { position, service_duration });
+        let vehicle_type = VehicleType { leg_stop_duration, speed: 2.0, ..VehicleType::unlimited(num_routes) };
+        let problem = Problem::new(Depot { position: Point::new(0.5, 0.0) }, visits.collect(), vehicle_type).unwrap();
+        let plan = plan(&problem, &iterations(3_000));
+        let (longest, total) = optimum(&problem);
+        prop_assert!((plan.makespan() - longest).abs() <= 1e-9 * longest.max(1.0), "{} {longest}", plan.makespan());
+        let found: f64 = plan.routes.iter().map(|route| route.duration).sum();
+        prop_assert!((found - total).abs() <= 1e-6 * total.max(1.0), "{found} {total}");
+    }
+
+    #[test]
+    fn a_start_is_never_made_worse(ponds in points(40), num_routes in 1..5usize, seed in any::<u64>()) {
+        let problem = Problem::research(Point::new(0.0, 0.0), &ponds, num_routes).unwrap();
+        let start = solve(&problem, &Options { seed, ..iterations(200) }).routes;
+        let before = evaluate(&problem, &start).unwrap().max_route_length();
+        let after = plan(&problem, &Options { start: Some(&start), ..iterations(50) }).max_route_length();
+        prop_assert!(after <= before * (1.0 + 1e-9));
+    }
+}
+
+fn farm(num_ponds: usize, num_routes: usize) -> Problem {
+    let farm = generate(num_ponds, Variant::Authors, 8).unwrap();
+    Problem::research(farm.depot, &farm.ponds, num_routes).unwrap()
+}
+
+#[test]
+fn same_seed_iterations_and_threads_same_routes() {
+    let problem = farm(150, 5);
+    for num_threads in [1, 2, 3] {
+        let options = Options { num_threads, ..iterations(2_000) };
+        assert_eq!(solve(&problem, &options).routes, solve(&problem, &options).routes);
+    }
+}
+
+#[test]
+fn the_order_of_the_ponds_hardly_matters() {
+    let farm = generate(60, Variant::Authors, 4).unwrap();
+    let turned: Vec<Point> = farm.ponds.iter().rev().copied().collect();
+    let longest = |ponds: &[Point]| {
+        let problem = Problem::research(farm.depot, ponds, 4).unwrap();
+        plan(&problem, &iterations(40_000)).max_route_length()
+    };
+    assert!((longest(&farm.ponds) / longest(&turned) - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn a_clock_that_has_run_out_still_gives_a_plan() {
+    for share in [1.0, 2.0] {
+        let clock = move || share;
+        let plan = plan(&farm(300, 5), &Options { clock: Some(&clock), ..Options::default() });
+        assert!(plan.is_feasible());
+    }
+}
+
+#[test]
+fn a_clock_that_runs_out_at_any_look_gives_a_plan() {
+    let problem = farm(40, 3);
+    for num_looks in 1..120 {
+        let looks = AtomicU64::new(0);
+        let clock = || looks.fetch_add(1, Ordering::Relaxed) as f64 / f64::from(num_looks);
+        let plan = plan(&problem, &Options { clock: Some(&clock), ..Options::default() });
+        assert!(plan.is_feasible());
+    }
+}
+
+#[test]
+fn a_watch_ends_the_search() {
+    let watch = |progress: &Progress| {
+        assert!(progress.num_iterations > 0 && progress.max_route_cost > 0.0);
+        ControlFlow::Break(())
+    };
+    let outcome = solve(&farm(80, 5), &Options { watch: Some(&watch), num_threads: 2, ..Options::default() });
+    assert!(outcome.num_iterations > 0);
+}
+
+#[test]
+fn limits_hold_where_the_total_is_the_goal() {
+    let ponds = generate(40, Variant::Authors, 2).unwrap();
+    let balanced = plan(&farm_of(&ponds.ponds, ponds.depot, f64::INFINITY), &iterations(20_000));
+    let max_duration = 1.2 * balanced.makespan();
+    let options = Options { goal: Goal::Total, ..iterations(20_000) };
+    let limited = plan(&farm_of(&ponds.ponds, ponds.depot, max_duration), &options);
+    assert!(limited.is_feasible(), "{:?}", limited.violations);
+    assert!(limited.total_length() < balanced.total_length());
+    let free = plan(&farm_of(&ponds.ponds, ponds.depot, f64::INFINITY), &options);
+    assert_eq!(free.routes.len(), 1);
+    assert!(free.total_length() <= limited.total_length());
+}
+
+fn farm_of(ponds: &[Point], depot: Point, max_duration: f64) -> Problem {
+    let visits = ponds.iter().map(|&position| Visit::at(position)).collect();
+    let vehicle_type = VehicleType { max_duration, ..VehicleType::unlimited(5) };
+    Problem::new(Depot { position: depot }, visits, vehicle_type).unwrap()
+}
