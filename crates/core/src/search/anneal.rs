@@ -8,7 +8,7 @@
 use super::airspace::Airspace;
 use super::budget::{Budget, Progress};
 use super::network::Network;
-use super::recreate::{Objective, Recreate};
+use super::recreate::{Objective, Rank, Recreate};
 use super::ruin::Ruin;
 use super::state::{Difference, State, Touched};
 use crate::random::Random;
@@ -42,10 +42,9 @@ impl Schedule {
 
 /// One annealing chain.
 pub(crate) struct Chain<A> {
-    /// The cheapest plan found.
+    /// The best plan found.
     pub best: State,
-    /// Its cost.
-    pub best_value: f64,
+    pub best_rank: Rank,
     /// Steps made.
     pub num_iterations: u64,
     pub objective: Objective,
@@ -64,10 +63,10 @@ pub(crate) struct Chain<A> {
 
 impl<A: Airspace> Chain<A> {
     pub fn new(network: &Network, state: State, objective: Objective, seed: u64, airspace: A) -> Self {
-        let value = objective.value(&state);
+        let (value, rank) = (objective.value(&state), objective.rank(&state));
         Self {
             best: state.clone(),
-            best_value: value,
+            best_rank: rank,
             num_iterations: 0,
             objective,
             random: Random::new(seed),
@@ -88,8 +87,8 @@ impl<A: Airspace> Chain<A> {
         self.since_best.settle(&mut self.trial, &self.best);
         self.airspace.load(&self.best);
         self.objective = objective;
-        self.best_value = objective.value(&self.best);
-        self.current_value = self.best_value;
+        self.best_rank = objective.rank(&self.best);
+        self.current_value = objective.value(&self.best);
     }
 
     /// Goes on from another chain's best plan.
@@ -148,8 +147,9 @@ impl<A: Airspace> Chain<A> {
         self.current_value = value;
         self.airspace.keep();
         self.since_best.add(&self.touched);
-        if value < self.best_value {
-            self.best_value = value;
+        let rank = self.objective.rank(&self.trial);
+        if rank.is_better(&self.best_rank) {
+            self.best_rank = rank;
             self.since_best.settle(&mut self.best, &self.trial);
             self.objective.target = self.objective.target.min(self.trial.max_route_cost());
         }

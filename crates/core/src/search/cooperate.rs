@@ -5,14 +5,15 @@
 
 use super::airspace::Airspace;
 use super::anneal::Chain;
+use super::recreate::Rank;
 use super::state::State;
 use std::sync::{Barrier, Mutex, PoisonError};
 
 /// Where the threads of one search meet.
 pub(super) struct Meeting {
     barrier: Barrier,
-    /// Value and plan each thread brings.
-    plans: Mutex<Vec<Option<(f64, State)>>>,
+    /// Rank and plan each thread brings.
+    plans: Mutex<Vec<Option<(Rank, State)>>>,
 }
 
 impl Meeting {
@@ -26,12 +27,11 @@ impl Meeting {
         if lock().len() == 1 {
             return;
         }
-        lock()[thread] = Some((chain.best_value, chain.best.clone()));
+        lock()[thread] = Some((chain.best_rank, chain.best.clone()));
         self.barrier.wait();
-        let best = lock().iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0)).cloned();
-        if let Some((value, state)) = best.filter(|best| best.0 < chain.best_value) {
+        let best = lock().iter().flatten().min_by(|a, b| a.0.compare(&b.0)).cloned();
+        if let Some((_, state)) = best.filter(|best| best.0.is_better(&chain.best_rank)) {
             chain.adopt(&state);
-            debug_assert!(chain.best_value <= value);
         }
         self.barrier.wait();
     }

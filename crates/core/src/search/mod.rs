@@ -140,7 +140,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
         std::iter::once(first).chain(rest).collect()
     });
     let num_iterations = chains[0].num_iterations;
-    chains.sort_by(|a, b| a.best_value.total_cmp(&b.best_value));
+    chains.sort_by(|a, b| a.best_rank.compare(&b.best_rank));
     Outcome { routes: to_indices(chains[0].best.routes(&network)), num_iterations }
 }
 
@@ -208,7 +208,7 @@ impl Search<'_> {
                 chain.anneal(self.network, self.budget, &schedule, from + slice, 0.0);
                 num_iterations = chain.num_iterations;
             }
-            chains.sort_by(|a, b| a.best_value.total_cmp(&b.best_value));
+            chains.sort_by(|a, b| a.best_rank.compare(&b.best_rank));
             chains.truncate(chains.len().div_ceil(2));
         }
         let mut winner = chains.swap_remove(0);

@@ -9,6 +9,7 @@ use super::network::Network;
 use super::ruin::Ruin;
 use super::state::{ABSENT, State, Touched};
 use crate::random::Random;
+use std::cmp::Ordering;
 
 /// One place in 2⁸ is passed over, so that a step can leave the greedy path.
 const PLACE_BLINK_BITS: u32 = 8;
@@ -34,6 +35,31 @@ impl Objective {
     /// What `state` costs.
     pub fn value(&self, state: &State) -> f64 {
         self.max_weight * state.max_route_cost() + self.total_weight * state.total
+    }
+
+    /// By what two plans are compared in the end: the longest route first, if it counts, then the total. The value, which
+    /// guides the search, would take a longer route for a shorter total.
+    pub fn rank(&self, state: &State) -> Rank {
+        Rank { longest: if self.max_weight > 0.0 { state.max_route_cost() } else { 0.0 }, total: state.total }
+    }
+}
+
+/// How good a plan is: less is better, the fields in falling order of importance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rank {
+    longest: f64,
+    total: f64,
+}
+
+impl Rank {
+    /// Orders two ranks, the better one first.
+    pub fn compare(&self, other: &Self) -> Ordering {
+        self.longest.total_cmp(&other.longest).then(self.total.total_cmp(&other.total))
+    }
+
+    /// Whether this is better than `other`.
+    pub fn is_better(&self, other: &Self) -> bool {
+        self.compare(other) == Ordering::Less
     }
 }
 
