@@ -85,3 +85,18 @@ def test_territory_keeps_drones_apart_on_shorter_routes_than_hpp() -> None:
 def test_territory_within_a_time_limit_long_over() -> None:
     (farm,) = pondhop.generate(150, 1, seed=5)
     assert pondhop.solve(farm.to_problem(5), planner="territory", time_limit_s=1e-6).plan.is_feasible
+
+
+def test_auto_says_what_it_chose_and_why() -> None:
+    task = pondhop.generate(60, seed=2)[0].to_problem(4)
+    shared = pondhop.solve(task, iterations=300)
+    assert shared.planner == "auto"
+    assert shared.reason.startswith("search for 300 steps")
+    apart = pondhop.solve(task, has_separate_airspace=True)
+    assert apart.reason.startswith("territory")
+    assert _core.separation(task, apart.plan.routes).overlap == 0.0
+
+
+def test_search_does_not_pretend_to_keep_drones_apart(problem: Problem) -> None:
+    with pytest.raises(InvalidInput, match="has_separate_airspace"):
+        pondhop.solve(problem, planner="search", has_separate_airspace=True)

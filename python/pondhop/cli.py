@@ -46,7 +46,7 @@ app = typer.Typer(
 app.add_typer(bench, name="bench")
 
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
-PlannerName = Annotated[str, typer.Option(help="Which planner: search, territory, hpp.")]
+PlannerName = Annotated[str, typer.Option(help="Which planner: auto, search, territory, hpp.")]
 TimeLimit = Annotated[
     float | None, typer.Option("--time-limit", metavar="SECONDS", help="Wall time of planning one farm.")
 ]
@@ -62,6 +62,9 @@ Slack = Annotated[
 ]
 Objective = Annotated[
     Literal["max", "total"], typer.Option(help="What to minimise: the longest route (then the total), or the total.")
+]
+SeparateAirspace = Annotated[
+    bool, typer.Option("--separate-airspace", help="Every drone keeps to a territory of its own.")
 ]
 RequireFeasible = Annotated[bool, typer.Option("--require-feasible", help="Exit with 3 if a plan breaks a rule.")]
 FarmsOption = Annotated[Path | None, typer.Option(help="The research farms that the plans are for.")]
@@ -123,13 +126,14 @@ def plan(
         str | None, typer.Option(metavar="LON,LAT", help="Where drones start and land, if the file does not say.")
     ] = None,
     sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
-    planner: PlannerName = "search",
+    planner: PlannerName = "auto",
     time_limit_s: TimeLimit = None,
     seed: Seed = 1,
     threads: Threads = 1,
     iterations: Iterations = None,
     slack_percent: Slack = 0.0,
     objective: Objective = "max",
+    separate_airspace: SeparateAirspace = False,
     figure: Annotated[bool, typer.Option(help="Draw the plan (PNG and SVG).")] = True,
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
@@ -162,6 +166,7 @@ def plan(
             slack_percent=slack_percent,
             objective=objective,
             progress=_search_progress(advance),
+            has_separate_airspace=separate_airspace,
         )
         advance()
         output.mkdir(parents=True, exist_ok=True)
@@ -198,13 +203,14 @@ def plan(
 def solve(
     farms: Annotated[Path, typer.Argument(exists=True, help="Research farms as JSON, or a TSPLIB .tsp file.")],
     routes: Annotated[int, typer.Option(min=1, help="At most this many routes a farm.")],
-    planner: PlannerName = "search",
+    planner: PlannerName = "auto",
     time_limit_s: TimeLimit = None,
     seed: Seed = 1,
     threads: Threads = 1,
     iterations: Iterations = None,
     slack_percent: Slack = 0.0,
     objective: Objective = "max",
+    separate_airspace: SeparateAirspace = False,
     start: Annotated[
         Path | None, typer.Option(exists=True, help="Plans of 'pondhop solve' that the search begins with.")
     ] = None,
@@ -252,6 +258,7 @@ def solve(
                 objective=objective,
                 start=starts[index] if starts is not None else None,
                 progress=_search_progress(advance),
+                has_separate_airspace=separate_airspace,
             )
             solutions.append(solution)
             advance()

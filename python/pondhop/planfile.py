@@ -55,6 +55,8 @@ class Solution:
         Processor time of all threads of this process while it planned; 0 for a plan that was read.
     is_interrupted
         Whether Ctrl-C ended the planning; the plan is the best so far.
+    reason
+        What `auto` chose and why; empty for other planners.
     """
 
     problem: Problem
@@ -66,6 +68,7 @@ class Solution:
     separation: Separation | None = None
     cpu_s: float = 0.0
     is_interrupted: bool = False
+    reason: str = ""
 
     @property
     def gap_percent(self) -> float | None:
@@ -90,6 +93,8 @@ class FarmPlan:
     def notes(self) -> tuple[str, ...]:
         """What the user should know before flying, a sentence each."""
         notes = list(self.farm.notes)
+        if self.solution.reason:
+            notes.append(f"Planner {self.solution.planner} chose {self.solution.reason}.")
         if self.fleet.sampling == "splashdown":
             notes.append(
                 "Splashdown: set bit 2 of the ArduPilot parameter MIS_OPTIONS (add 4) on every drone, or it disarms on "

@@ -61,6 +61,8 @@ class Effort:
         Routes to begin with.
     progress
         See `ProgressFunction`.
+    has_separate_airspace
+        Whether every drone must keep to a territory of its own.
     """
 
     seed: int = 1
@@ -71,6 +73,7 @@ class Effort:
     objective: Objective = "max"
     start: Routes | None = None
     progress: ProgressFunction | None = None
+    has_separate_airspace: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,11 +88,14 @@ class Planned:
         From coordinates to finished routes.
     is_interrupted
         Whether Ctrl-C ended the planning; the routes are the best so far.
+    reason
+        What was chosen and why, where the planner chose.
     """
 
     routes: Routes
     elapsed_s: float
     is_interrupted: bool = False
+    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -111,15 +117,19 @@ class Planner:
     run: Callable[[Problem, Effort], Planned]
 
 
+def _search_time_limit_s(problem: Problem, effort: Effort) -> float | None:
+    """Return how long to search: as asked, or by the size of the farm."""
+    if effort.time_limit_s is not None or effort.iterations is not None:
+        return effort.time_limit_s
+    least_s, most_s = SEARCH_SECONDS
+    return min(max(least_s, SEARCH_SECONDS_PER_POND * problem.num_ponds), most_s)
+
+
 def _search(problem: Problem, effort: Effort) -> Planned:
-    time_limit_s = effort.time_limit_s
-    if time_limit_s is None and effort.iterations is None:
-        least_s, most_s = SEARCH_SECONDS
-        time_limit_s = min(max(least_s, SEARCH_SECONDS_PER_POND * problem.num_ponds), most_s)
     routes, elapsed_s, _, is_interrupted = _core.search(
         problem,
         seed=effort.seed,
-        time_limit_s=time_limit_s,
+        time_limit_s=_search_time_limit_s(problem, effort),
         iterations=effort.iterations,
         threads=effort.threads,
         slack=effort.slack_percent / 100,
@@ -130,9 +140,33 @@ def _search(problem: Problem, effort: Effort) -> Planned:
     return Planned(routes, elapsed_s, is_interrupted)
 
 
+def _territory(problem: Problem, effort: Effort) -> Planned:
+    return Planned(*_core.territory(problem, seed=effort.seed, time_limit_s=effort.time_limit_s))
+
+
+def _auto(problem: Problem, effort: Effort) -> Planned:
+    """Choose between `search` and `territory`, and how long to search."""
+    if effort.has_separate_airspace:
+        reason = "territory, because separate airspace is asked for"
+        return replace(_territory(problem, effort), reason=reason)
+    if effort.time_limit_s is not None:
+        how_long = f"{effort.time_limit_s:g} s, as asked"
+    elif effort.iterations is not None:
+        how_long = f"{effort.iterations} steps, as asked"
+    else:
+        how_long = f"{_search_time_limit_s(problem, effort):g} s, which is enough for {problem.num_ponds} ponds"
+    reason = f"search for {how_long}; it has the shortest routes where drones may share airspace"
+    return replace(_search(problem, effort), reason=reason)
+
+
 PLANNERS = {
     planner.name: planner
     for planner in (
+        Planner(
+            "auto",
+            "chooses planner and effort from the size of the farm, the time limit and whether airspace is separate",
+            _auto,
+        ),
         Planner(
             "search",
             "the shortest longest route, then the shortest total, as good as the time allows",
@@ -146,9 +180,7 @@ PLANNERS = {
         Planner(
             "territory",
             "balanced and short routes, each in a territory of its own: the hulls of their ponds do not touch",
-            lambda problem, effort: Planned(
-                *_core.territory(problem, seed=effort.seed, time_limit_s=effort.time_limit_s)
-            ),
+            _territory,
         ),
     )
 }
@@ -158,7 +190,7 @@ PLANNERS = {
 def solve(
     problem: Problem,
     *,
-    planner: str | PlannerFunction = "search",
+    planner: str | PlannerFunction = "auto",
     seed: int = 1,
     time_limit_s: float | None = None,
     threads: int = 1,
@@ -167,6 +199,7 @@ def solve(
     objective: Objective = "max",
     start: Routes | None = None,
     progress: ProgressFunction | None = None,
+    has_separate_airspace: bool = False,
 ) -> Solution:
     """Plan routes for a problem.
 
@@ -176,7 +209,7 @@ def solve(
         What is to be planned.
     planner
         A name in `PLANNERS`, or a function of your own (see `PlannerFunction`).
-    seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress
+    seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress, has_separate_airspace
         See `Effort`.
 
     Returns
@@ -189,9 +222,13 @@ def solve(
     InvalidInput
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
-    effort = Effort(seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress)
+    effort = Effort(
+        seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress, has_separate_airspace
+    )
     faults = _faults(effort, problem)
     chosen = _chosen(planner, faults)
+    if has_separate_airspace and chosen is PLANNERS["search"]:
+        faults.append(Fault("has_separate_airspace", "search lets drones share airspace", "use auto or territory"))
     if chosen is None or faults:
         raise InvalidInput(faults)
     cpu_start_s = time.process_time()
@@ -206,6 +243,7 @@ def solve(
         cpu_s=cpu_s,
         lower_bound=_core.lower_bound(problem),
         is_interrupted=planned.is_interrupted,
+        reason=planned.reason,
     )
 
 
@@ -213,7 +251,7 @@ def plan(
     farm: Farm,
     fleet: Fleet,
     *,
-    planner: str | PlannerFunction = "search",
+    planner: str | PlannerFunction = "auto",
     seed: int = 1,
     time_limit_s: float | None = None,
     threads: int = 1,
@@ -221,6 +259,7 @@ def plan(
     slack_percent: float = 0.0,
     objective: Objective = "max",
     progress: ProgressFunction | None = None,
+    has_separate_airspace: bool = False,
 ) -> FarmPlan:
     """Plan a round over a farm for a fleet.
 
@@ -230,7 +269,7 @@ def plan(
         See `pondhop.read_farm`.
     fleet
         The drones and how they sample.
-    planner, seed, time_limit_s, threads, iterations, slack_percent, objective, progress
+    planner, seed, time_limit_s, threads, iterations, slack_percent, objective, progress, has_separate_airspace
         See `solve`.
 
     Returns
@@ -254,6 +293,7 @@ def plan(
         slack_percent=slack_percent,
         objective=objective,
         progress=progress,
+        has_separate_airspace=has_separate_airspace,
     )
     separation = _core.separation(problem, solution.plan.routes)
     return FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))

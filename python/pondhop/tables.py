@@ -59,6 +59,8 @@ def print_solutions(solutions: Sequence[Solution]) -> None:
         [solution.gap_percent for solution in solutions],
     )
     table.add_row("seconds for all farms", f"{sum(solution.elapsed_s for solution in solutions):.4f}")
+    for reason in sorted({solution.reason for solution in solutions} - {""}):
+        table.add_row("chosen", reason)
     num_infeasible = sum(not solution.plan.is_feasible for solution in solutions)
     table.add_row("infeasible plans", str(num_infeasible), style="bold red" if num_infeasible else None)
     Console(highlight=False).print(table)
