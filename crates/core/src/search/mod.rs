@@ -3,12 +3,12 @@
 //! Problem: one depot, m equal drones, every visit once; the single-depot min-max multiple travelling salesman problem, with
 //! service times and a fixed time per leg. Costs are seconds, which in a research instance are length units.
 //!
-//! Method ([`solve`]): balanced sectors around the depot ([`construct`]), each toured and improved by 2-opt and Or-opt
-//! ([`improve`]); if the effort allows, a race of several rotations of the sectors; from the winner, ruin ([`ruin`]) and
-//! recreate ([`recreate`]) under annealing ([`anneal`]), first for the longest route, then for the total with the longest route
-//! as a limit. Threads share their best plans now and then ([`cooperate`]).
+//! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
+//! (`improve`); if the effort allows, a race of several rotations of the sectors; from the winner, ruin (`ruin`) and
+//! recreate (`recreate`) under annealing (`anneal`), first for the longest route, then for the total with the longest route
+//! as a limit. Threads share their best plans now and then (`cooperate`).
 //!
-//! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes ([`state`]); memory
+//! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
 //! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
 
 mod airspace;
@@ -31,6 +31,7 @@ pub use budget::{Clock, Progress, Watch};
 use construct::Sweep;
 pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap, pseudo_angle};
 use cooperate::Meeting;
+use improve::smooth;
 pub(crate) use network::Network;
 pub(crate) use recreate::Objective;
 pub(crate) use state::State;
@@ -104,6 +105,8 @@ const RACE_STEPS_PER_VISIT: f64 = 25.0;
 const START_STEPS_PER_VISIT: f64 = 0.3;
 /// Weight of the mean route beside the longest: without it, shortening any other route would not count.
 const MEAN_WEIGHT: f64 = 0.02;
+/// How long finding neighbours takes, in times of the rough plan.
+const NEIGHBOURS_COST: f64 = 12.0;
 /// Temperatures relative to the longest route.
 const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
 const MAX_HEAT: (f64, f64) = (1e-2, 1e-6);
@@ -118,8 +121,10 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);
     if options.start.is_none() {
-        let rough = Sweep::new(&network).sectors(0.0, network.num_routes);
-        if budget.is_time_over() {
+        let mut rough = Sweep::new(&network).sectors(0.0, network.num_routes);
+        // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
+        if budget.share(0) * NEIGHBOURS_COST > 1.0 {
+            rough.iter_mut().for_each(|route| smooth(&network, route));
             return Outcome { routes: to_indices(rough), num_iterations: 0 };
         }
     }

@@ -4,9 +4,9 @@
 //! no two drones fly over the same place except on their ways from and to the depot. It is HPP as its authors wish it in their
 //! future work: clusters balanced so that the longest route is shortest, and routes optimised (Davis et al., section 5).
 //!
-//! Method ([`plan`]): many ways of cutting the farm along straight lines, balanced by estimate ([`cuts`]); the most promising
+//! Method ([`plan`]): many ways of cutting the farm along straight lines, balanced by estimate (`cuts`); the most promising
 //! ones toured, improved by 2-opt and Or-opt and balanced again by the costs of their tours; from the best, ruin and recreate
-//! under annealing as in [`crate::search`], where a visit may change its route only if the hulls stay apart ([`hulls`]).
+//! under annealing as in [`crate::search`], where a visit may change its route only if the hulls stay apart (`hulls`).
 //! O(n log n) for the cuts, O(visits of a route) for a change of the territories; memory O(n).
 
 mod cuts;
