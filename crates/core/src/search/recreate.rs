@@ -15,6 +15,8 @@ use std::cmp::Ordering;
 const PLACE_BLINK_BITS: u32 = 8;
 /// One route in 2⁶ is passed over whole, without which a visit would never leave a short route for an empty one.
 const ROUTE_BLINK_BITS: u32 = 6;
+/// Routes at whose ends a visit is tried, beside those near it: a random run of them where there are more.
+const MAX_DEPOT_ENDS: u32 = 16;
 /// What a unit of overflow over the target costs, beside the added length.
 const OVERFLOW_PRICE: f64 = 10.0;
 
@@ -185,7 +187,13 @@ fn cheapest_place(
     // Beside a near neighbour the ends of the routes were tried too; others are at least `reach` away.
     let depot_leg = network.depot_legs[visit as usize];
     let least = depot_leg + reach + service;
-    for route in 0..network.num_routes as u32 {
+    let num_routes = network.num_routes as u32;
+    let first = if num_routes > MAX_DEPOT_ENDS { (salt >> 32) as u32 % num_routes } else { 0 };
+    for offset in 0..num_routes {
+        if offset >= MAX_DEPOT_ENDS && best_price.is_finite() {
+            break;
+        }
+        let route = (first + offset) % num_routes;
         let depot = network.num_visits as u32 + route;
         let node = state.nodes[depot as usize];
         if least - node.leg_after < best_price || node.next == depot {
