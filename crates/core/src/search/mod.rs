@@ -103,8 +103,6 @@ const MAX_STARTS: usize = 16;
 const RACE_STEPS_PER_VISIT: f64 = 25.0;
 /// Steps that take as long as making a start, per visit.
 const START_STEPS_PER_VISIT: f64 = 0.3;
-/// Weight of the mean route beside the longest: without it, shortening any other route would not count.
-const MEAN_WEIGHT: f64 = 0.02;
 /// How long finding neighbours takes, in times of the rough plan.
 const NEIGHBOURS_COST: f64 = 12.0;
 /// Temperatures relative to the longest route.
@@ -244,12 +242,7 @@ impl Search<'_> {
 
     fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain<SharedAirspace> {
         let state = State::new(self.network, routes);
-        let objective = Objective {
-            max_weight: 1.0,
-            total_weight: MEAN_WEIGHT / self.network.num_routes as f64,
-            cap: f64::INFINITY,
-            target: state.max_route_cost(),
-        };
+        let objective = Objective::longest_route(self.network, &state);
         let seed = self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP));
         Chain::new(self.network, state, objective, seed, SharedAirspace)
     }
@@ -258,8 +251,7 @@ impl Search<'_> {
     fn total_objective(&self, state: &State) -> Objective {
         // Taking a visit out and putting it back changes the last bits of a route's cost.
         let longest = state.max_route_cost() * (1.0 + self.options.slack) * (1.0 + 1e-12);
-        let cap = longest.max(self.goal_cap());
-        Objective { max_weight: 0.0, total_weight: 1.0, cap, target: cap }
+        Objective::total_within(longest.max(self.goal_cap()))
     }
 
     /// From now to `end`.

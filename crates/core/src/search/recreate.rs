@@ -33,7 +33,21 @@ pub(crate) struct Objective {
     pub target: f64,
 }
 
+/// Weight of the mean route beside the longest: without it, shortening any other route would not count.
+const MEAN_WEIGHT: f64 = 0.02;
+
 impl Objective {
+    /// The longest route, and a little the mean one, from `state` on.
+    pub fn longest_route(network: &Network, state: &State) -> Self {
+        let total_weight = MEAN_WEIGHT / network.num_routes as f64;
+        Self { max_weight: 1.0, total_weight, cap: f64::INFINITY, target: state.max_route_cost() }
+    }
+
+    /// Only the total, while no route may become longer than `cap`.
+    pub fn total_within(cap: f64) -> Self {
+        Self { max_weight: 0.0, total_weight: 1.0, cap, target: cap }
+    }
+
     /// What `state` costs.
     pub fn value(&self, state: &State) -> f64 {
         self.max_weight * state.max_route_cost() + self.total_weight * state.total

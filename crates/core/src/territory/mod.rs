@@ -40,8 +40,6 @@ const MAX_END: f64 = 0.9;
 /// Temperatures relative to the longest route.
 const MAX_HEAT: (f64, f64) = (1e-3, 1e-6);
 const TOTAL_HEAT: (f64, f64) = (1e-3, 3e-6);
-/// Weight of the mean route beside the longest.
-const MEAN_WEIGHT: f64 = 0.02;
 
 /// Plans routes for `problem` whose hulls do not overlap: visit indices in flying order, every visit once, at most one route
 /// per drone, none empty. Where visits share a place, hulls may share that place.
@@ -58,16 +56,10 @@ pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<u
     let mut random = Random::new(seed);
     let tours = best_tours(network, &budget, &mut random);
     let state = State::new(network, &tours);
-    let objective = Objective {
-        max_weight: 1.0,
-        total_weight: MEAN_WEIGHT / network.num_routes as f64,
-        cap: f64::INFINITY,
-        target: state.max_route_cost(),
-    };
+    let objective = Objective::longest_route(network, &state);
     let mut chain = Chain::new(network, state, objective, seed, Hulls::new(network, &tours));
     anneal(network, &budget, &mut chain, MAX_END, MAX_HEAT);
-    let longest = chain.best.max_route_cost();
-    chain.restart(Objective { max_weight: 0.0, total_weight: 1.0, cap: longest, target: longest });
+    chain.restart(Objective::total_within(chain.best.max_route_cost()));
     anneal(network, &budget, &mut chain, 1.0, TOTAL_HEAT);
     to_indices(chain.best.routes(network))
 }
