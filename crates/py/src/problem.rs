@@ -107,6 +107,36 @@ impl Problem {
         self.inner.vehicle_type().num_available
     }
 
+    /// Time on station per pond in seconds, shape (n,).
+    #[getter]
+    fn service_durations_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.inner.visits().iter().map(|visit| visit.service_duration).collect::<Vec<f64>>().to_pyarray(py)
+    }
+
+    /// Ground speed in metres per second.
+    #[getter]
+    fn speed_m_s(&self) -> f64 {
+        self.inner.vehicle_type().speed
+    }
+
+    /// What stopping and starting adds to every leg, in seconds.
+    #[getter]
+    fn leg_stop_s(&self) -> f64 {
+        self.inner.vehicle_type().leg_stop_duration
+    }
+
+    /// Longest route in metres that a drone can fly; infinite where nothing limits it.
+    #[getter]
+    fn max_length_m(&self) -> f64 {
+        self.inner.vehicle_type().max_length
+    }
+
+    /// Longest route in seconds that a drone can fly; infinite where nothing limits it.
+    #[getter]
+    fn max_duration_s(&self) -> f64 {
+        self.inner.vehicle_type().max_duration
+    }
+
     fn __repr__(&self) -> String {
         format!("Problem(num_ponds={}, num_drones={})", self.num_ponds(), self.num_drones())
     }
