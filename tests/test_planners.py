@@ -19,9 +19,26 @@ def test_planners_are_registered_under_their_names() -> None:
     assert all(planner.name == name and planner.description for name, planner in PLANNERS.items())
 
 
+def test_a_problem_says_what_it_was_made_of() -> None:
+    problem = Problem(
+        (1.0, 2.0),
+        np.array([[0.0, 3.0], [0.0, 6.0]]),
+        2,
+        service_durations_s=np.array([4.0, 5.0]),
+        speed_m_s=6.0,
+        leg_stop_s=7.0,
+        max_length_m=8.0,
+        max_duration_s=9.0,
+    )
+    assert problem.service_durations_s.tolist() == [4.0, 5.0]
+    assert (problem.speed_m_s, problem.leg_stop_s, problem.max_length_m, problem.max_duration_s) == (6.0, 7.0, 8.0, 9.0)
+    free = Problem((1.0, 2.0), np.array([[0.0, 3.0]]), 1)
+    assert (free.speed_m_s, free.leg_stop_s, free.max_length_m, free.max_duration_s) == (1.0, 0.0, np.inf, np.inf)
+
+
 @pytest.mark.parametrize("planner", PLANNERS)
 def test_every_planner_serves_every_pond_and_repeats_itself(planner: str) -> None:
-    for farm in pondhop.generate(40, 3, seed=11):
+    for farm in pondhop.generate(20, 2, seed=11):
         solution = pondhop.solve(farm.to_problem(5), planner=planner, seed=3, iterations=300)
         assert solution.plan.is_feasible
         assert solution.planner == planner

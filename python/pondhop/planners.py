@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Literal, get_args
@@ -41,7 +42,7 @@ ProgressFunction = Callable[[float, int, float], object]
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard a planner tries, and for what. One-shot planners ignore all but the seed.
+    """How hard a planner tries, and for what. A planner ignores what it has no use for.
 
     Attributes
     ----------
@@ -110,11 +111,14 @@ class Planner:
         One line for help and tables.
     run
         Plans a problem with an effort.
+    is_airspace_shared
+        Whether drones cross each other's airspace, so that separate airspace cannot be asked for.
     """
 
     name: str
     description: str
     run: Callable[[Problem, Effort], Planned]
+    is_airspace_shared: bool = False
 
 
 def _search_time_limit_s(problem: Problem, effort: Effort) -> float | None:
@@ -159,6 +163,37 @@ def _auto(problem: Problem, effort: Effort) -> Planned:
     return replace(_search(problem, effort), reason=reason)
 
 
+@contextmanager
+def _extra(extra: str) -> Iterator[None]:
+    """Import what needs an extra of the package; name the remedy where it is not installed."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        package, _, _ = (error.name or "").partition(".")
+        action = f"install it with: pip install 'pondhop[{extra}]'"
+        raise InvalidInput([Fault("planner", f"it needs {package}, which is not installed", action)]) from error
+
+
+def _ortools(problem: Problem, effort: Effort) -> Planned:
+    with _extra("baselines"):
+        from pondhop.baselines import ortools
+    return Planned(*ortools.solve_as_authors(problem, time_limit_s=effort.time_limit_s))
+
+
+def _ortools_gls(problem: Problem, effort: Effort) -> Planned:
+    with _extra("baselines"):
+        from pondhop.baselines import ortools
+    found = ortools.solve_guided(problem, time_limit_s=effort.time_limit_s, max_solutions=effort.iterations)
+    return Planned(*found)
+
+
+def _pyvrp(problem: Problem, effort: Effort) -> Planned:
+    with _extra("baselines"):
+        from pondhop.baselines import pyvrp
+    found = pyvrp.solve(problem, seed=effort.seed, time_limit_s=effort.time_limit_s, iterations=effort.iterations)
+    return Planned(*found)
+
+
 PLANNERS = {
     planner.name: planner
     for planner in (
@@ -171,6 +206,7 @@ PLANNERS = {
             "search",
             "the shortest longest route, then the shortest total, as good as the time allows",
             _search,
+            is_airspace_shared=True,
         ),
         Planner(
             "hpp",
@@ -181,6 +217,24 @@ PLANNERS = {
             "territory",
             "balanced and short routes, each in a territory of its own: the hulls of their ponds do not touch",
             _territory,
+        ),
+        Planner(
+            "ortools",
+            "OR-Tools as the paper's authors used it, who call it GLOP: descent from cheapest arcs until stuck",
+            _ortools,
+            is_airspace_shared=True,
+        ),
+        Planner(
+            "ortools-gls",
+            "OR-Tools with guided local search for a time limit",
+            _ortools_gls,
+            is_airspace_shared=True,
+        ),
+        Planner(
+            "pyvrp",
+            "PyVRP, balanced by lowering its limit on the distance of a route as far as plans are found",
+            _pyvrp,
+            is_airspace_shared=True,
         ),
     )
 }
@@ -227,8 +281,9 @@ def solve(
     )
     faults = _faults(effort, problem)
     chosen = _chosen(planner, faults)
-    if has_separate_airspace and chosen is PLANNERS["search"]:
-        faults.append(Fault("has_separate_airspace", "search lets drones share airspace", "use auto or territory"))
+    if has_separate_airspace and chosen is not None and chosen.is_airspace_shared:
+        message = f"{chosen.name} lets drones share airspace"
+        faults.append(Fault("has_separate_airspace", message, "use auto or territory"))
     if chosen is None or faults:
         raise InvalidInput(faults)
     cpu_start_s = time.process_time()

@@ -21,7 +21,8 @@ from pondhop.errors import Fault, InvalidInput
 if TYPE_CHECKING:
     from pondhop.planners import PlannerFunction
 
-SECONDS_OF_WARM_UP = 0.001
+SECONDS_OF_WARM_UP = 0.1
+"""At most; a planner that counts iterations stops after one."""
 
 
 @dataclass(frozen=True)
@@ -216,7 +217,8 @@ def warm_up(entrant: Entrant) -> None:
         If there is no such planner or an option has no meaning.
     """
     problem = Problem((0.0, 0.0), np.array([[0.0, 1.0], [1.0, 0.0]]), 2)
-    planners.solve(problem, planner=entrant.planner, time_limit_s=SECONDS_OF_WARM_UP, **entrant.options)
+    options = {"iterations": 1, "time_limit_s": SECONDS_OF_WARM_UP} | dict(entrant.options)
+    planners.solve(problem, planner=entrant.planner, **options)
 
 
 def measure(request: Request) -> tuple[Run, list[list[int]]]:

@@ -1,0 +1,6 @@
+"""The rivals of our planners, run on the same problems and judged by the same evaluator.
+
+`ortools` and `pyvrp` put a problem into the words of those solvers and read their routes; `integers` makes the whole
+numbers that both of them compute with. Each module imports the package it is named after, so it is imported only when
+its planner runs (extra ``baselines``). By name the planners are in `pondhop.PLANNERS`.
+"""
