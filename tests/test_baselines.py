@@ -1,4 +1,4 @@
-"""The rivals: hand-computed cases, an oracle, limits, and what they say where they cannot plan."""
+"""The baselines: hand-computed cases, an oracle, limits, and what they say where they cannot plan."""
 
 import itertools
 import signal
@@ -15,7 +15,7 @@ import pondhop
 from pondhop import InvalidInput, Problem, baselines
 from pondhop.baselines import integers
 
-RIVALS = ("ortools", "ortools-gls", "pyvrp")
+BASELINES = ("ortools", "ortools-gls", "pyvrp")
 THOROUGH = ("ortools-gls", "pyvrp")
 ITERATIONS = 300
 
@@ -27,13 +27,13 @@ def plan_of(problem: Problem, planner: str, iterations: int = ITERATIONS) -> pon
     return plan
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_two_ponds_north_and_one_east(planner: str) -> None:
     plan = plan_of(Problem((0.0, 0.0), np.array([[0.0, 3.0], [0.0, 6.0], [5.0, 0.0]]), 2), planner)
     assert sorted(plan.route_lengths) == [10.0, 12.0]
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_service_is_balanced_too(planner: str) -> None:
     ponds = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0]])
     plan = plan_of(Problem((0.0, 0.0), ponds, 2, service_durations_s=np.array([10.0, 1.0, 1.0])), planner)
@@ -41,25 +41,25 @@ def test_service_is_balanced_too(planner: str) -> None:
     assert [0] in plan.routes
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 @pytest.mark.parametrize("num_drones", [1, 5])
 def test_one_pond(planner: str, num_drones: int) -> None:
     assert plan_of(Problem((1.0, 1.0), np.array([[4.0, 5.0]]), num_drones), planner).route_lengths == [10.0]
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_more_drones_than_ponds(planner: str) -> None:
     plan = plan_of(Problem((0.0, 0.0), np.array([[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]]), 8), planner)
     assert plan.max_route_length == 2.0
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_ponds_in_one_place(planner: str) -> None:
     assert plan_of(Problem((0.0, 0.0), np.full((6, 2), 2.0), 3), planner).max_route_length == pytest.approx(32**0.5)
     assert plan_of(Problem((0.0, 0.0), np.zeros((4, 2)), 2), planner).total_length == 0.0
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_lengths_from_the_smallest_to_the_largest(planner: str) -> None:
     ponds = np.array([[0.0, 0.3], [0.0, 0.6], [0.5, 0.0]])
     for scale in (1.0, 1e3, 1e9) if planner == "ortools" else (1e-9, 1.0, 1e9):
@@ -92,7 +92,7 @@ def test_small_farms_are_planned_best(planner: str, seed: int) -> None:
     services_s=st.lists(st.floats(0.0, 100.0), min_size=7, max_size=7),
     speed_m_s=st.floats(0.1, 20.0),
 )
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_every_pond_is_visited_once(
     planner: str, places: list[tuple[int, int]], num_drones: int, services_s: list[float], speed_m_s: float
 ) -> None:
@@ -102,7 +102,7 @@ def test_every_pond_is_visited_once(
     assert plan_of(problem, planner, iterations=20).is_feasible
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 @pytest.mark.parametrize(("max_length_m", "max_duration_s"), [(12.001, np.inf), (np.inf, 12.001)])
 def test_a_limit_that_one_plan_keeps(planner: str, max_length_m: float, max_duration_s: float) -> None:
     ponds = np.array([[0.0, 3.0], [0.0, 6.0], [5.0, 0.0]])
@@ -110,7 +110,7 @@ def test_a_limit_that_one_plan_keeps(planner: str, max_length_m: float, max_dura
     assert plan_of(problem, planner).is_feasible
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_a_limit_of_length_where_time_is_short_elsewhere(planner: str) -> None:
     # Alone with its service pond 0 would be the longest route; but ponds 1 and 2 are too far apart for one drone.
     ponds = np.array([[1.0, 0.0], [-4.0, 0.0], [4.0, 0.0]])
@@ -123,7 +123,7 @@ def test_a_limit_of_length_where_time_is_short_elsewhere(planner: str) -> None:
     assert plan.makespan_s == pytest.approx(28.0)
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 @pytest.mark.parametrize(("max_length_m", "max_duration_s"), [(11.9, np.inf), (np.inf, 11.9)])
 def test_no_plan_is_an_error(planner: str, max_length_m: float, max_duration_s: float) -> None:
     ponds = np.array([[0.0, 3.0], [0.0, 6.0], [5.0, 0.0]])
@@ -152,7 +152,7 @@ def test_another_seed_is_another_search() -> None:
     assert plans[0] != plans[1]
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_too_many_ponds_are_refused(planner: str) -> None:
     problem = Problem((0.0, 0.0), np.zeros((integers.MAX_PONDS + 1, 2)), 5)
     with pytest.raises(InvalidInput, match="takes too much memory") as caught:
@@ -160,14 +160,14 @@ def test_too_many_ponds_are_refused(planner: str) -> None:
     assert "search" in caught.value.faults[0].action
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_separate_airspace_is_not_promised(planner: str) -> None:
     problem = Problem((0.0, 0.0), np.array([[0.0, 1.0]]), 1)
     with pytest.raises(InvalidInput, match=f"{planner} lets drones share airspace"):
         pondhop.solve(problem, planner=planner, has_separate_airspace=True)
 
 
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_a_missing_package_is_named(planner: str, monkeypatch: pytest.MonkeyPatch) -> None:
     package = planner.partition("-")[0]
     for name in [name for name in sys.modules if name.partition(".")[0] == package]:
@@ -197,7 +197,7 @@ def ctrl_c_after_half_a_second() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("ctrl_c_after_half_a_second")
-@pytest.mark.parametrize("planner", RIVALS)
+@pytest.mark.parametrize("planner", BASELINES)
 def test_ctrl_c_leaves_the_best_plan_so_far(planner: str) -> None:
     problem = pondhop.generate(100, seed=3)[0].to_problem(5)
     solution = pondhop.solve(problem, planner=planner, time_limit_s=600.0)

@@ -46,7 +46,9 @@ app = typer.Typer(
 app.add_typer(bench, name="bench")
 
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
-PlannerName = Annotated[str, typer.Option(help="Which planner: auto, search, territory, hpp.")]
+PlannerName = Annotated[
+    str, typer.Option(help="Which planner: auto, search, territory, hpp; to compare: ortools, ortools-gls, pyvrp.")
+]
 TimeLimit = Annotated[
     float | None, typer.Option("--time-limit", metavar="SECONDS", help="Wall time of planning one farm.")
 ]

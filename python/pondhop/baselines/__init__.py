@@ -1,4 +1,4 @@
-"""The rivals of our planners, run on the same problems and judged by the same evaluator.
+"""Solvers of others, run as planners on the same problems and judged by the same evaluator.
 
 `ortools` and `pyvrp` put a problem into the words of those solvers and read their routes; `integers` makes the whole
 numbers that both of them compute with. Each module imports the package it is named after, so it is imported only when

@@ -2,7 +2,7 @@
 
 The problem: at most m routes through all ponds, the total plus 100 times the longest route (the global span) as short
 as possible. OR-Tools builds a first plan along cheapest arcs and improves it by local search within constraint
-programming; the simplex solver GLOP, after which the paper names this rival, takes no part. Local search looks at
+programming; the simplex solver GLOP, after which the paper names this baseline, takes no part. Local search looks at
 O(n^2) neighbours and more for each step.
 
 - `solve_as_authors`: the configuration of Davis, Mukherjee, Wills and Ouyang, *Path Planning Algorithms for Robotic

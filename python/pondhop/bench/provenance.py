@@ -16,7 +16,7 @@ _REPOSITORY = Path(__file__).resolve().parents[3]
 
 @cache
 def build_digest() -> str:
-    """Return 12 hexadecimal digits that change with the code that plans: the core, the planners, their rivals."""
+    """Return 12 hexadecimal digits that change with the code that plans: the core, planners and baselines."""
     baselines = sorted((Path(planners.__file__).parent / "baselines").rglob("*.py"))
     files = (Path(_core.__file__), Path(planners.__file__), *baselines)
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:12]
