@@ -132,12 +132,10 @@ def test_no_plan_is_an_error(planner: str, max_length_m: float, max_duration_s: 
         pondhop.solve(problem, planner=planner, iterations=ITERATIONS)
 
 
-@pytest.mark.parametrize("planner", ["ortools", "ortools-gls"])
-def test_no_plan_in_time_is_an_error(planner: str) -> None:
-    problem = pondhop.generate(200)[0].to_problem(5)
-    with pytest.raises(InvalidInput, match="OR-Tools found no plan in") as caught:
-        pondhop.solve(problem, planner=planner, time_limit_s=1e-6)
-    assert caught.value.faults[0].path == "time_limit_s"
+@pytest.mark.parametrize("planner", BASELINES)
+def test_a_time_limit_long_over_leaves_the_first_plan(planner: str) -> None:
+    problem = pondhop.generate(100)[0].to_problem(5)
+    assert pondhop.solve(problem, planner=planner, time_limit_s=1e-6).plan.is_feasible
 
 
 @pytest.mark.parametrize("planner", THOROUGH)

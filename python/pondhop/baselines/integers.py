@@ -2,7 +2,7 @@
 
 Node 0 is the depot, node i + 1 pond i. What is minimised is what `pondhop.evaluate` calls the duration of a route:
 legs, stops and service; the service of a pond is part of every leg that leads to it. In research farms durations are
-lengths. Matrices take O(n^2) memory, about 70 bytes for each pair of places in the solver and here together.
+lengths. Matrices take O(n^2) memory: 60 to 80 bytes for each pair of places, here and in the solver together.
 """
 
 from __future__ import annotations

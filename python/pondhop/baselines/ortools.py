@@ -53,7 +53,7 @@ def solve_as_authors(problem: Problem, *, time_limit_s: float | None = None) -> 
     problem
         What is to be planned. Its limits hold, up to the rounding of each leg down to a thousandth.
     time_limit_s
-        Wall time in seconds, which the authors did not limit.
+        Wall time in seconds, which the authors did not limit. OR-Tools' first plan is made in any case.
 
     Returns
     -------
@@ -68,7 +68,8 @@ def solve_as_authors(problem: Problem, *, time_limit_s: float | None = None) -> 
     Raises
     ------
     InvalidInput
-        If OR-Tools finds no plan, or there are more than `integers.MAX_PONDS` ponds.
+        If OR-Tools finds no plan that keeps the limits of the drones, or if there are more than
+        `integers.MAX_PONDS` ponds.
     """
     start_s = time.perf_counter()
     legs = integers.legs_of(problem)
@@ -89,7 +90,8 @@ def solve_guided(
     problem
         What is to be planned. Its limits hold.
     time_limit_s
-        Wall time in seconds; without it and `max_solutions` `GUIDED_SECONDS_PER_NODE`.
+        Wall time in seconds; without it and `max_solutions` `GUIDED_SECONDS_PER_NODE`. OR-Tools' first plan is made
+        in any case.
     max_solutions
         Ends the search after so many plans, each a step of the local search.
 
@@ -170,20 +172,17 @@ def _parameters(start_s: float, time_limit_s: float | None) -> Any:
 def _solved(model: _Model, parameters: Any, start_s: float) -> tuple[list[list[int]], float, bool]:
     with _cancelled_by_ctrl_c(model.routing) as interrupt:
         assignment = model.routing.SolveWithParameters(parameters)
+        if model.routing.status() == routing_enums_pb2.RoutingSearchStatus.ROUTING_FAIL_TIMEOUT:
+            parameters.ClearField("time_limit")
+            parameters.solution_limit = 1
+            assignment = model.routing.SolveWithParameters(parameters)
     if assignment is None:
         if interrupt.is_set():
             raise KeyboardInterrupt
-        raise InvalidInput([_no_plan(model.routing.status(), parameters)])
+        message = "OR-Tools found no plan that keeps the limits of the drones"
+        raise InvalidInput([Fault("planner", message, "raise the limits or the number of drones")])
     routes = _routes(model, assignment)
     return routes, time.perf_counter() - start_s, interrupt.is_set()
-
-
-def _no_plan(status: int, parameters: Any) -> Fault:
-    if status == routing_enums_pb2.RoutingSearchStatus.ROUTING_FAIL_TIMEOUT:
-        seconds = parameters.time_limit.ToMicroseconds() / 1e6
-        return Fault("time_limit_s", f"OR-Tools found no plan in {seconds:g} s", "give it more time")
-    message = "OR-Tools found no plan that keeps the limits of the drones"
-    return Fault("planner", message, "raise the limits or the number of drones")
 
 
 def _routes(model: _Model, assignment: Any) -> list[list[int]]:
