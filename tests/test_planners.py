@@ -1,11 +1,13 @@
 """The family of planners: by name, one's own, and what is said about wrong ones."""
 
+from typing import get_type_hints
+
 import numpy as np
 import pytest
 
 import pondhop
 from pondhop import InvalidInput, Problem, _core
-from pondhop.planners import PLANNERS
+from pondhop.planners import PLANNERS, Effort, Options
 
 
 @pytest.fixture
@@ -117,3 +119,9 @@ def test_auto_says_what_it_chose_and_why() -> None:
 def test_search_does_not_pretend_to_keep_drones_apart(problem: Problem) -> None:
     with pytest.raises(InvalidInput, match="has_separate_airspace"):
         pondhop.solve(problem, planner="search", has_separate_airspace=True)
+
+
+def test_the_options_are_the_fields_of_effort() -> None:
+    assert get_type_hints(Options) == get_type_hints(Effort)
+    with pytest.raises(TypeError, match="speed"):
+        pondhop.solve(Problem((0.0, 0.0), np.array([[0.0, 1.0]]), 1), speed=3)  # type: ignore[call-arg]

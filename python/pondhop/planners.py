@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
 
 from pondhop import _core
 from pondhop._core import Problem
@@ -75,6 +75,20 @@ class Effort:
     start: Routes | None = None
     progress: ProgressFunction | None = None
     has_separate_airspace: bool = False
+
+
+class Options(TypedDict, total=False):
+    """Options of `solve` and `plan`: the fields of `Effort`, for type checkers and editors."""
+
+    seed: int
+    time_limit_s: float | None
+    threads: int
+    iterations: int | None
+    slack_percent: float
+    objective: Objective
+    start: Routes | None
+    progress: ProgressFunction | None
+    has_separate_airspace: bool
 
 
 @dataclass(frozen=True)
@@ -245,15 +259,7 @@ def solve(
     problem: Problem,
     *,
     planner: str | PlannerFunction = "auto",
-    seed: int = 1,
-    time_limit_s: float | None = None,
-    threads: int = 1,
-    iterations: int | None = None,
-    slack_percent: float = 0.0,
-    objective: Objective = "max",
-    start: Routes | None = None,
-    progress: ProgressFunction | None = None,
-    has_separate_airspace: bool = False,
+    **options: Unpack[Options],
 ) -> Solution:
     """Plan routes for a problem.
 
@@ -263,8 +269,8 @@ def solve(
         What is to be planned.
     planner
         A name in `PLANNERS`, or a function of your own (see `PlannerFunction`).
-    seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress, has_separate_airspace
-        See `Effort`.
+    **options
+        Fields of `Effort`, as in ``seed=7, time_limit_s=0.1``.
 
     Returns
     -------
@@ -276,12 +282,10 @@ def solve(
     InvalidInput
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
-    effort = Effort(
-        seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress, has_separate_airspace
-    )
+    effort = Effort(**options)
     faults = _faults(effort, problem)
     chosen = _chosen(planner, faults)
-    if has_separate_airspace and chosen is not None and chosen.is_airspace_shared:
+    if effort.has_separate_airspace and chosen is not None and chosen.is_airspace_shared:
         message = f"{chosen.name} lets drones share airspace"
         faults.append(Fault("has_separate_airspace", message, "use auto or territory"))
     if chosen is None or faults:
@@ -293,7 +297,7 @@ def solve(
         problem=problem,
         plan=_core.evaluate(problem, planned.routes),
         planner=chosen.name,
-        seed=seed,
+        seed=effort.seed,
         elapsed_s=planned.elapsed_s,
         cpu_s=cpu_s,
         lower_bound=_core.lower_bound(problem),
@@ -307,14 +311,7 @@ def plan(
     fleet: Fleet,
     *,
     planner: str | PlannerFunction = "auto",
-    seed: int = 1,
-    time_limit_s: float | None = None,
-    threads: int = 1,
-    iterations: int | None = None,
-    slack_percent: float = 0.0,
-    objective: Objective = "max",
-    progress: ProgressFunction | None = None,
-    has_separate_airspace: bool = False,
+    **options: Unpack[Options],
 ) -> FarmPlan:
     """Plan a round over a farm for a fleet.
 
@@ -324,7 +321,7 @@ def plan(
         See `pondhop.read_farm`.
     fleet
         The drones and how they sample.
-    planner, seed, time_limit_s, threads, iterations, slack_percent, objective, progress, has_separate_airspace
+    planner, **options
         See `solve`.
 
     Returns
@@ -338,18 +335,7 @@ def plan(
         As `solve`.
     """
     problem = farm.to_problem(fleet)
-    solution = solve(
-        problem,
-        planner=planner,
-        seed=seed,
-        time_limit_s=time_limit_s,
-        threads=threads,
-        iterations=iterations,
-        slack_percent=slack_percent,
-        objective=objective,
-        progress=progress,
-        has_separate_airspace=has_separate_airspace,
-    )
+    solution = solve(problem, planner=planner, **options)
     separation = _core.separation(problem, solution.plan.routes)
     return FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
 
