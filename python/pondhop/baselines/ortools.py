@@ -7,8 +7,8 @@ O(n^2) neighbours and more for each step.
 
 - `solve_as_authors`: the configuration of Davis, Mukherjee, Wills and Ouyang, *Path Planning Algorithms for Robotic
   Aquaculture Monitoring*: local search until no neighbour is better, distances as ``int(1000 * d)``. They come from a
-  Python callback, which takes most of the run time: a matrix leads to the same plan in a third of it. The callback
-  stays, because the paper's run times have it. The authors also limited each route to 3.0, which some farms cannot be
+  Python callback, which takes more than half of the run time: a matrix leads to the same plan. The callback stays,
+  because the paper's run times have it. The authors also limited each route to 3.0, which some farms cannot be
   planned with; here limits are those of the problem.
 - `solve_guided`: guided local search (Voudouris and Tsang, *Guided local search and its application to the traveling
   salesman problem*, EJOR 1999) with a registered matrix, finer distances and a time limit.
