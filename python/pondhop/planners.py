@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import partial
 from typing import TYPE_CHECKING, Literal, get_args
 
 from pondhop import _core
@@ -35,6 +36,9 @@ SEARCH_SECONDS = (0.1, 60.0)
 """How long `search` takes where neither a time limit nor iterations are given: by pond, at least and at most."""
 
 Objective = Literal["max", "total"]
+Decoding = Literal["greedy", "symmetries", "sampling"]
+"""How the attention models choose: the likeliest at every step; the best of that for the farm turned and mirrored in
+all eight ways; the best of plans drawn with the model's probabilities."""
 ProgressFunction = Callable[[float, int, float], object]
 """Told about ten times a second: longest route so far in seconds, iterations, share of the effort used."""
 
@@ -52,7 +56,7 @@ class Effort:
     threads
         How many threads the planner may use.
     iterations
-        Steps of the search, in place of a time limit or beside one.
+        Steps of the search, in place of a time limit or beside one; plans drawn where ``decoding`` is ``sampling``.
     slack_percent
         How much the longest route may grow to shorten the total.
     objective
@@ -63,6 +67,8 @@ class Effort:
         See `ProgressFunction`.
     has_separate_airspace
         Whether every drone must keep to a territory of its own.
+    decoding
+        See `Decoding`.
     """
 
     seed: int = 1
@@ -74,6 +80,7 @@ class Effort:
     start: Routes | None = None
     progress: ProgressFunction | None = None
     has_separate_airspace: bool = False
+    decoding: Decoding = "greedy"
 
 
 @dataclass(frozen=True)
@@ -159,6 +166,14 @@ def _auto(problem: Problem, effort: Effort) -> Planned:
     return replace(_search(problem, effort), reason=reason)
 
 
+def _attention(name: Literal["am50", "am_minmax"], problem: Problem, effort: Effort) -> Planned:
+    from pondhop.baselines import attention
+
+    return Planned(
+        *attention.plan(problem, name, decoding=effort.decoding, num_samples=effort.iterations, seed=effort.seed)
+    )
+
+
 PLANNERS = {
     planner.name: planner
     for planner in (
@@ -182,6 +197,16 @@ PLANNERS = {
             "balanced and short routes, each in a territory of its own: the hulls of their ponds do not touch",
             _territory,
         ),
+        Planner(
+            "am",
+            "the paper's attention model: trained for the least total; may use more routes than there are drones",
+            partial(_attention, "am50"),
+        ),
+        Planner(
+            "am-minmax",
+            "an attention model trained for the shortest longest route; never more routes than drones",
+            partial(_attention, "am_minmax"),
+        ),
     )
 }
 """The planners of this package by name."""
@@ -200,6 +225,7 @@ def solve(
     start: Routes | None = None,
     progress: ProgressFunction | None = None,
     has_separate_airspace: bool = False,
+    decoding: Decoding = "greedy",
 ) -> Solution:
     """Plan routes for a problem.
 
@@ -209,7 +235,7 @@ def solve(
         What is to be planned.
     planner
         A name in `PLANNERS`, or a function of your own (see `PlannerFunction`).
-    seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress, has_separate_airspace
+    seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress, has_separate_airspace, decoding
         See `Effort`.
 
     Returns
@@ -223,7 +249,16 @@ def solve(
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
     effort = Effort(
-        seed, time_limit_s, threads, iterations, slack_percent, objective, start, progress, has_separate_airspace
+        seed,
+        time_limit_s,
+        threads,
+        iterations,
+        slack_percent,
+        objective,
+        start,
+        progress,
+        has_separate_airspace,
+        decoding,
     )
     faults = _faults(effort, problem)
     chosen = _chosen(planner, faults)
@@ -260,6 +295,7 @@ def plan(
     objective: Objective = "max",
     progress: ProgressFunction | None = None,
     has_separate_airspace: bool = False,
+    decoding: Decoding = "greedy",
 ) -> FarmPlan:
     """Plan a round over a farm for a fleet.
 
@@ -269,7 +305,9 @@ def plan(
         See `pondhop.read_farm`.
     fleet
         The drones and how they sample.
-    planner, seed, time_limit_s, threads, iterations, slack_percent, objective, progress, has_separate_airspace
+    planner, seed, time_limit_s, threads, iterations, slack_percent, objective, progress
+        See `solve`.
+    has_separate_airspace, decoding
         See `solve`.
 
     Returns
@@ -294,6 +332,7 @@ def plan(
         objective=objective,
         progress=progress,
         has_separate_airspace=has_separate_airspace,
+        decoding=decoding,
     )
     separation = _core.separation(problem, solution.plan.routes)
     return FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
@@ -311,9 +350,12 @@ def _faults(effort: Effort, problem: Problem) -> list[Fault]:
         faults.append(Fault("iterations", f"{effort.iterations} is below 1", "give at least one, or leave it out"))
     if not 0 <= effort.slack_percent < math.inf:
         faults.append(Fault("slack_percent", f"{effort.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
-    if effort.objective not in get_args(Objective):
-        action = f"choose one of: {', '.join(get_args(Objective))}"
-        faults.append(Fault("objective", f"there is no objective {effort.objective!r}", action))
+    for name, chosen, possible in (
+        ("objective", effort.objective, get_args(Objective)),
+        ("decoding", effort.decoding, get_args(Decoding)),
+    ):
+        if chosen not in possible:
+            faults.append(Fault(name, f"there is no {name} {chosen!r}", f"choose one of: {', '.join(possible)}"))
     if effort.start is not None:
         faults += _start_faults(problem, effort.start)
     return faults
