@@ -148,20 +148,17 @@ impl Model {
         let mut rollout = decoder.rollout();
         let mut logits = Vec::new();
         for (route, visits) in routes.iter().enumerate() {
-            let returns = (route > 0).then_some((0, 0));
-            let nodes = visits.iter().enumerate().map(|(place, &visit)| (place, visit + 1));
-            for (place, node) in returns.into_iter().chain(nodes) {
-                logits.extend(rollout.logits_of_nodes());
+            let returns = (route > 0).then(|| (0, format!("routes[{route}]"), "no further route may begin".to_owned()));
+            let visits = visits.iter().enumerate().map(|(place, &visit)| {
+                (visit.saturating_add(1), format!("routes[{route}][{place}]"), format!("visit {visit} is not open"))
+            });
+            for (node, path, message) in returns.into_iter().chain(visits) {
                 let Some(slot) = rollout.open_slot(node) else {
                     let mut faults = Faults::default();
-                    let message = if node == 0 {
-                        "no further route may begin".into()
-                    } else {
-                        format!("visit {} is not open", node - 1)
-                    };
-                    faults.add(format!("routes[{route}][{place}]"), message, "give routes that the model can build");
+                    faults.add(path, message, "give routes that this model can build");
                     return faults.into_result(Array2::zeros((0, 0)));
                 };
+                logits.extend(rollout.logits_of_nodes());
                 rollout.choose(slot);
             }
         }

@@ -15,7 +15,7 @@ import zipfile
 import zlib
 from functools import cache
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +97,7 @@ def read_model(path: Path) -> AttentionModel:
         raise InvalidInput(faults)
     try:
         return AttentionModel(
-            {name: array.astype(np.float32) for name, array in arrays.items()},
+            {name: _single(array) for name, array in arrays.items()},
             variant=architecture["variant"],
             **{name: architecture[name] for name in _SIZES},
         )
@@ -106,13 +106,17 @@ def read_model(path: Path) -> AttentionModel:
         raise InvalidInput(faults) from error
 
 
-def _arrays(path: Path) -> dict[str, NDArray[np.generic]]:
-    """Return the arrays of the file, the weights of any type of number."""
+def _arrays(path: Path) -> dict[str, NDArray[Any]]:
     with path.open("rb") as file:
         archive = np.load(file, allow_pickle=False)
         if not isinstance(archive, np.lib.npyio.NpzFile):
             raise ValueError("it holds a single array")
         return {name: archive[name] for name in archive.files}
+
+
+def _single(array: NDArray[Any]) -> NDArray[Any]:
+    """Return an array in single precision; one that holds no such numbers as it is, for the model to name it."""
+    return array.astype(np.float32) if np.issubdtype(array.dtype, np.floating) else array
 
 
 def _architecture_faults(path: Path, architecture: object) -> list[Fault]:
