@@ -180,3 +180,65 @@ fn spacings(ponds: &[Point]) -> Vec<f64> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn farm(variant: Variant, depot: (f64, f64), ponds: &[(f64, f64)], num_drones: usize) -> Farm {
+        let ponds: Vec<Point> = ponds.iter().map(|&(x, y)| Point::new(x, y)).collect();
+        Farm::new(variant, &Problem::research(Point::new(depot.0, depot.1), &ponds, num_drones).unwrap())
+    }
+
+    fn rows(view: &View) -> Vec<Vec<f32>> {
+        view.ponds.rows().into_iter().map(|row| row.to_vec()).collect()
+    }
+
+    #[test]
+    fn cvrp_takes_a_farm_in_the_unit_square_as_it_is() {
+        let view = farm(Variant::Cvrp, (0.0, 1.0), &[(0.25, 0.5), (0.5, 0.25)], 1).view(Symmetry::NONE);
+        assert_eq!(view.depot.to_vec(), [0.0, 1.0]);
+        assert_eq!(rows(&view), [[0.25, 0.5, 1.0 / 3.0], [0.5, 0.25, 1.0 / 3.0]]);
+    }
+
+    #[test]
+    fn cvrp_scales_any_other_farm_into_the_middle_of_the_unit_square() {
+        let view = farm(Variant::Cvrp, (10.0, 0.0), &[(14.0, 2.0), (12.0, 1.0)], 2).view(Symmetry::NONE);
+        assert_eq!(view.depot.to_vec(), [0.0, 0.25]);
+        assert_eq!(rows(&view), [[1.0, 0.75, 0.5], [0.5, 0.5, 0.5]]);
+        let view = farm(Variant::Cvrp, (-3.0, -3.0), &[(-3.0, -3.0)], 2).view(Symmetry::NONE);
+        assert_eq!((view.depot.to_vec(), rows(&view)), (vec![0.5, 0.5], vec![vec![0.5, 0.5, 1.0]]));
+    }
+
+    #[test]
+    fn minmax_measures_from_the_depot_in_units_of_the_farthest_pond() {
+        let view = farm(Variant::MinMax, (1.0, 1.0), &[(1.0, 9.0), (1.0, 5.0), (-2.0, 1.0)], 2).view(Symmetry::NONE);
+        assert_eq!(view.depot.to_vec(), [0.0, 0.0, 0.0, 13.0 / 24.0]);
+        assert_eq!(rows(&view), [[0.0, 1.0, 1.0, 0.5], [0.0, 0.5, 0.5, 0.5], [-0.375, 0.0, 0.375, 0.625]]);
+        assert_eq!(view.spacing, 13.0 / 24.0);
+    }
+
+    #[test]
+    fn minmax_of_a_farm_without_spacing_or_extent() {
+        let alone = farm(Variant::MinMax, (0.0, 0.0), &[(0.0, 2.0)], 2).view(Symmetry::NONE);
+        assert_eq!((rows(&alone), alone.spacing), (vec![vec![0.0, 1.0, 1.0, 1.0]], 1.0));
+        let heap = farm(Variant::MinMax, (3.0, 3.0), &[(3.0, 3.0); 2], 2).view(Symmetry::NONE);
+        assert_eq!((rows(&heap), heap.spacing), (vec![vec![0.0; 4]; 2], 1.0));
+    }
+
+    #[test]
+    fn the_eight_symmetries_lay_a_square_on_itself() {
+        for centre in [0.0, 0.5] {
+            let mut images: Vec<(f64, f64)> = Symmetry::all()
+                .map(|symmetry| symmetry.image(Point::new(centre + 0.25, centre + 0.125), centre))
+                .map(|image| (image.x - centre, image.y - centre))
+                .collect();
+            images.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            let all = [-0.25, -0.125, 0.125, 0.25].into_iter().flat_map(|x: f64| {
+                let y = 0.375 - x.abs();
+                [(x, -y), (x, y)]
+            });
+            assert_eq!(images, all.collect::<Vec<_>>());
+        }
+    }
+}
