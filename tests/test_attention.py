@@ -19,7 +19,6 @@ DATA = Path(__file__).parent / "data"
 PACKAGE = Path(attention.__file__).parent
 PARITY = 1e-3
 """Between single precision in another order and PyTorch's; a wrong term shows in the first digit."""
-MODELS = {"am": "am50", "am-minmax": "am_minmax"}
 
 
 def routes_of_nodes(nodes: list[int]) -> list[list[int]]:
@@ -45,10 +44,10 @@ def test_logits_of_shipped_weights_are_those_of_pytorch(name: ModelName) -> None
         logits = model.logits(problem, routes)
         assert (np.isneginf(logits) == closed).all()
         np.testing.assert_allclose(np.where(closed, 0, logits), np.where(closed, 0, expected), rtol=0, atol=PARITY)
-        assert model.plan(problem) == (routes, pytest.approx(0, abs=60))
+        assert model.plan(problem)[0] == routes
 
 
-@pytest.mark.parametrize("planner", MODELS)
+@pytest.mark.parametrize("planner", ["am", "am-minmax"])
 @pytest.mark.parametrize("decoding", get_args(Decoding))
 def test_every_pond_once_and_the_same_again(planner: str, decoding: Decoding) -> None:
     for num_ponds, num_routes in ((1, 3), (2, 5), (50, 5), (120, 3)):
@@ -135,7 +134,7 @@ def broken(tmp_path: Path) -> Callable[..., tuple[str, ...]]:
         change(arrays)
         path = tmp_path / "broken.npz"
         with path.open("wb") as file:
-            np.savez(file, **arrays)  # type: ignore[arg-type]
+            np.savez(file, **arrays)
         with pytest.raises(InvalidInput) as caught:
             attention.read_model(path)
         assert all(fault.path.startswith(str(path)) and fault.action for fault in caught.value.faults)
