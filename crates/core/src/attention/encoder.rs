@@ -12,7 +12,7 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, Slice, Zip, aview_mut1, a
 
 /// Attention weights that are held at once: 1 MB, which stays in the second-level cache.
 const MAX_HELD_WEIGHTS: usize = 1 << 18;
-/// Rows of a block at least: below, the products spend their time on fetching keys.
+/// Rows of a block at least, so that keys and values are fetched for many queries at once.
 const MIN_BLOCK_ROWS: usize = 64;
 /// Rows that the feed-forward map takes at once.
 const FEED_FORWARD_ROWS: usize = 256;

@@ -79,8 +79,8 @@ impl Architecture {
 pub enum Decoding {
     /// The likeliest choice at every step.
     Greedy,
-    /// The best greedy plan of the farm's eight views: turned by quarters, mirrored or not (Kwon et al., POMO, NeurIPS 2020,
-    /// section 4.2).
+    /// The best greedy plan of the farm's eight views: turned by quarters, mirrored or not (the instance augmentation of Kwon
+    /// et al., POMO, NeurIPS 2020).
     Symmetries,
     /// The best of plans whose choices are drawn with the network's probabilities (Kool et al., section 5).
     Sampling {
@@ -167,7 +167,7 @@ impl Model {
         Ok(Array2::from_shape_vec((num_choices, num_nodes), logits).expect("a logit for every node and choice"))
     }
 
-    fn decoder<'a>(&'a self, farm: &'a Farm, symmetry: Symmetry) -> Decoder<'a> {
+    fn decoder(&self, farm: &Farm, symmetry: Symmetry) -> Decoder<'_> {
         let view = farm.view(symmetry);
         let nodes = encode(&self.weights, self.architecture.num_heads, &view);
         Decoder::new(&self.architecture, &self.weights, view, &nodes)

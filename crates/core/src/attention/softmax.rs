@@ -1,8 +1,7 @@
 //! Exponentials of many numbers at once.
 //!
-//! The functions hold no branch and call nothing, so that the compiler works on several numbers at once; the exponentials of
-//! the system library are ten times slower, and the encoder takes 24 n² of them. Relative errors are below 3e-7, as the tests
-//! show.
+//! An encoder of three layers and eight heads takes 24 n² exponentials. The functions here hold no branch and call nothing, so
+//! that the compiler works on several numbers at once. Relative errors are below 3e-7, as the tests show.
 
 /// 1.5 · 2²³: a number below 2²² added to it keeps no fraction. The exponent bias of a single rides along.
 const ROUNDER: f32 = 12_582_912.0 + 127.0;
