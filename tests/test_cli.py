@@ -88,6 +88,18 @@ def test_solve_without_output_prints_the_same_json(run: Run, farms: Path, tmp_pa
     assert plans(printed.out) == plans(written.out) == plans((tmp_path / "plans.json").read_text())
 
 
+def test_solve_passes_on_how_a_network_decodes(run: Run, farms: Path) -> None:
+    def total(*options: object) -> float:
+        ran = run("solve", farms, "--routes", 4, "--planner", "am", *options)
+        assert ran.code == 0
+        return sum(float(solution["total_length"]) for solution in json.loads(ran.out))
+
+    assert total("--decoding", "symmetries") < total()
+    drawn = total("--decoding", "sampling", "--iterations", 2, "--seed", 3)
+    assert drawn == total("--decoding", "sampling", "--iterations", 2, "--seed", 3)
+    assert drawn != total("--decoding", "sampling", "--iterations", 2, "--seed", 4)
+
+
 def test_solve_reads_tsplib(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "four.tsp"
     path.write_text(

@@ -81,6 +81,28 @@ class LocalFrame:
     def to_local(self, lonlat_deg: NDArray[np.float64]) -> NDArray[np.float64]: ...
     def to_geographic(self, local_m: NDArray[np.float64]) -> NDArray[np.float64]: ...
 
+@final
+class AttentionModel:
+    def __init__(
+        self,
+        tensors: dict[str, NDArray[np.float32]],
+        *,
+        variant: Literal["cvrp", "minmax"],
+        width: int,
+        num_heads: int,
+        num_layers: int,
+        feed_forward_width: int,
+    ) -> None: ...
+    def plan(
+        self,
+        problem: Problem,
+        *,
+        decoding: Literal["greedy", "symmetries", "sampling"] = "greedy",
+        num_samples: int = 1,
+        seed: int = 1,
+    ) -> tuple[list[list[int]], float]: ...
+    def logits(self, problem: Problem, routes: Sequence[Sequence[int]]) -> NDArray[np.float32]: ...
+
 def evaluate(problem: Problem, routes: Sequence[Sequence[int]]) -> Plan: ...
 def generate(
     num_ponds: int, seed: int, variant: Literal["authors", "paper"] = "authors"

@@ -47,14 +47,20 @@ app.add_typer(bench, name="bench")
 
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
 PlannerName = Annotated[
-    str, typer.Option(help="Which planner: auto, search, territory, hpp; to compare: ortools, ortools-gls, pyvrp.")
+    str,
+    typer.Option(
+        help="Which planner: auto, search, territory, hpp; to compare: ortools, ortools-gls, pyvrp, am, am-minmax."
+    ),
 ]
 TimeLimit = Annotated[
     float | None, typer.Option("--time-limit", metavar="SECONDS", help="Wall time of planning one farm.")
 ]
 Threads = Annotated[int, typer.Option(min=1, help="Threads a planner may use for one farm.")]
 Iterations = Annotated[
-    int | None, typer.Option(min=1, help="Steps of the search a farm and thread: reproducible, unlike a time limit.")
+    int | None,
+    typer.Option(
+        min=1, help="Steps of the search a farm and thread, or plans to draw: reproducible, unlike a time limit."
+    ),
 ]
 Slack = Annotated[
     float,
@@ -67,6 +73,12 @@ Objective = Annotated[
 ]
 SeparateAirspace = Annotated[
     bool, typer.Option("--separate-airspace", help="Every drone keeps to a territory of its own.")
+]
+Decoding = Annotated[
+    Literal["greedy", "symmetries", "sampling"],
+    typer.Option(
+        help="How am and am-minmax plan: likeliest choices, best of 8 symmetries of the farm, best of 128 draws."
+    ),
 ]
 RequireFeasible = Annotated[bool, typer.Option("--require-feasible", help="Exit with 3 if a plan breaks a rule.")]
 FarmsOption = Annotated[Path | None, typer.Option(help="The research farms that the plans are for.")]
@@ -136,6 +148,7 @@ def plan(
     slack_percent: Slack = 0.0,
     objective: Objective = "max",
     separate_airspace: SeparateAirspace = False,
+    decoding: Decoding = "greedy",
     figure: Annotated[bool, typer.Option(help="Draw the plan (PNG and SVG).")] = True,
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
@@ -169,6 +182,7 @@ def plan(
             objective=objective,
             progress=_search_progress(advance),
             has_separate_airspace=separate_airspace,
+            decoding=decoding,
         )
         advance()
         output.mkdir(parents=True, exist_ok=True)
@@ -213,6 +227,7 @@ def solve(
     slack_percent: Slack = 0.0,
     objective: Objective = "max",
     separate_airspace: SeparateAirspace = False,
+    decoding: Decoding = "greedy",
     start: Annotated[
         Path | None, typer.Option(exists=True, help="Plans of 'pondhop solve' that the search begins with.")
     ] = None,
@@ -261,6 +276,7 @@ def solve(
                 start=starts[index] if starts is not None else None,
                 progress=_search_progress(advance),
                 has_separate_airspace=separate_airspace,
+                decoding=decoding,
             )
             solutions.append(solution)
             advance()

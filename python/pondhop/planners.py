@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import partial
 from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
 
 from pondhop import _core
@@ -36,6 +37,9 @@ SEARCH_SECONDS = (0.1, 60.0)
 """How long `search` takes where neither a time limit nor iterations are given: by pond, at least and at most."""
 
 Objective = Literal["max", "total"]
+Decoding = Literal["greedy", "symmetries", "sampling"]
+"""How the attention models choose: the likeliest at every step; the best of that for the farm turned and mirrored in
+all eight ways; the best of plans drawn with the model's probabilities."""
 ProgressFunction = Callable[[float, int, float], object]
 """Told about ten times a second: longest route so far in seconds, iterations, share of the effort used."""
 
@@ -53,7 +57,7 @@ class Effort:
     threads
         How many threads the planner may use.
     iterations
-        Steps of the search, in place of a time limit or beside one.
+        Steps of the search, in place of a time limit or beside one; plans drawn where ``decoding`` is ``sampling``.
     slack_percent
         How much the longest route may grow to shorten the total.
     objective
@@ -64,6 +68,8 @@ class Effort:
         See `ProgressFunction`.
     has_separate_airspace
         Whether every drone must keep to a territory of its own.
+    decoding
+        See `Decoding`.
     """
 
     seed: int = 1
@@ -75,6 +81,7 @@ class Effort:
     start: Routes | None = None
     progress: ProgressFunction | None = None
     has_separate_airspace: bool = False
+    decoding: Decoding = "greedy"
 
 
 class Options(TypedDict, total=False):
@@ -89,6 +96,7 @@ class Options(TypedDict, total=False):
     start: Routes | None
     progress: ProgressFunction | None
     has_separate_airspace: bool
+    decoding: Decoding
 
 
 @dataclass(frozen=True)
@@ -208,6 +216,14 @@ def _pyvrp(problem: Problem, effort: Effort) -> Planned:
     return Planned(*found)
 
 
+def _attention(name: Literal["am50", "am_minmax"], problem: Problem, effort: Effort) -> Planned:
+    from pondhop.baselines import attention
+
+    return Planned(
+        *attention.plan(problem, name, decoding=effort.decoding, num_samples=effort.iterations, seed=effort.seed)
+    )
+
+
 PLANNERS = {
     planner.name: planner
     for planner in (
@@ -248,6 +264,18 @@ PLANNERS = {
             "pyvrp",
             "PyVRP, balanced by lowering its limit on the distance of a route as far as plans are found",
             _pyvrp,
+            is_airspace_shared=True,
+        ),
+        Planner(
+            "am",
+            "the paper's attention model: trained for the least total; may use more routes than there are drones",
+            partial(_attention, "am50"),
+            is_airspace_shared=True,
+        ),
+        Planner(
+            "am-minmax",
+            "an attention model trained for the shortest longest route; never more routes than drones",
+            partial(_attention, "am_minmax"),
             is_airspace_shared=True,
         ),
     )
@@ -352,9 +380,12 @@ def _faults(effort: Effort, problem: Problem) -> list[Fault]:
         faults.append(Fault("iterations", f"{effort.iterations} is below 1", "give at least one, or leave it out"))
     if not 0 <= effort.slack_percent < math.inf:
         faults.append(Fault("slack_percent", f"{effort.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
-    if effort.objective not in get_args(Objective):
-        action = f"choose one of: {', '.join(get_args(Objective))}"
-        faults.append(Fault("objective", f"there is no objective {effort.objective!r}", action))
+    for name, chosen, possible in (
+        ("objective", effort.objective, get_args(Objective)),
+        ("decoding", effort.decoding, get_args(Decoding)),
+    ):
+        if chosen not in possible:
+            faults.append(Fault(name, f"there is no {name} {chosen!r}", f"choose one of: {', '.join(possible)}"))
     if effort.start is not None:
         faults += _start_faults(problem, effort.start)
     return faults

@@ -18,9 +18,11 @@
 //! 14. [`hpp`]: the paper's planner.
 //! 15. [`search`]: the min-max optimiser.
 //! 16. [`territory`]: balanced routes in territories that do not overlap.
+//! 17. [`attention`]: the attention model, a trained network that builds routes.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod attention;
 pub mod bound;
 pub mod error;
 pub mod evaluate;

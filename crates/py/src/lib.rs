@@ -3,6 +3,7 @@
 //! It converts, releases the GIL and maps errors; it holds no algorithm. Its files are named after the core modules they
 //! wrap. Every index is checked at this border, because a Rust panic is no `Exception` in Python.
 
+mod attention;
 mod bound;
 mod error;
 mod evaluate;
@@ -20,6 +21,8 @@ use pyo3::prelude::*;
 /// The native core of pondhop. Use the names of the package `pondhop`, not this module.
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use crate::attention::AttentionModel;
     #[pymodule_export]
     use crate::bound::{lower_bound, lower_bound_of_total};
     #[pymodule_export]
