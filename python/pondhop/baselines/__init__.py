@@ -1,0 +1,1 @@
+"""Planners of others, to compare ours with: the paper's rivals and today's solvers."""
