@@ -313,10 +313,10 @@ def roll_out(
         if is_greedy:
             action = logits.argmax(dim=2)
         else:
-            # One uniform number a choice; the clamp keeps rounding of the sum from choosing past the last open node.
+            # One uniform number a choice; below 1 by more than rounding, it never passes the last open node.
             cumulative = logits.softmax(dim=2).cumsum(dim=2)
-            threshold = torch.rand_like(cumulative[:, :, :1]) * cumulative[:, :, -1:]
-            action = (cumulative <= threshold).sum(dim=2).clamp_(max=farms.num_ponds)
+            threshold = torch.rand_like(cumulative[:, :, :1]) * (1 - 1e-6) * cumulative[:, :, -1:]
+            action = (cumulative <= threshold).sum(dim=2)
         steps.append((action, routing.last, state, mask, logits if keeps_logits else None))
         routing.choose(action)
     actions, last_nodes, states, masks, logits_of_steps = zip(*steps, strict=True)
@@ -385,6 +385,7 @@ class _Routing:
     def mask(self) -> Tensor:
         if self.variant == "cvrp":
             mask = self.visited.masked_fill((self.num_in_route >= self.capacity)[:, :, None], -math.inf)
+            mask[:, :, 0] = 0
             may_close = self.num_in_route > 0
         else:
             mask = self.visited.clone()
