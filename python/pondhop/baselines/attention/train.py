@@ -256,3 +256,60 @@ def load(path: Path, device: torch.device) -> State:
     state.optimizer.load_state_dict(saved["optimizer"])
     state.num_steps, state.elapsed_s, state.history = saved["num_steps"], saved["elapsed_s"], saved["history"]
     return state
+
+
+def tensors(model: AttentionModel) -> dict[str, NDArray[np.float32]]:
+    """Return the weights by the names under which inference reads them.
+
+    Matrices are (outputs, inputs): y = W x + b. Batch normalisation becomes the map that its running statistics make
+    of it, ``scale * x + shift``; the weight of the distance is what multiplies log(1 + distance / spacing).
+    """
+    weights: dict[str, Tensor] = {}
+    for name, module in model.named_modules():
+        if isinstance(module, nn.BatchNorm1d):
+            assert module.running_mean is not None
+            assert module.running_var is not None
+            scale = module.weight / torch.sqrt(module.running_var + module.eps)
+            weights[f"{name}.scale"] = scale
+            weights[f"{name}.shift"] = module.bias - module.running_mean * scale
+        elif isinstance(module, nn.Linear):
+            weights[f"{name}.weight"] = module.weight
+            if module.bias is not None:
+                weights[f"{name}.bias"] = module.bias
+    if model.architecture.variant == "minmax":
+        weights["distance_weight"] = nn.functional.softplus(model.distance)
+    return {name: weight.detach().float().cpu().numpy() for name, weight in weights.items()}
+
+
+def read_weights(path: Path) -> AttentionModel:
+    """Return the model whose weights `export` wrote, ready for inference."""
+    with np.load(path, allow_pickle=False) as arrays:
+        architecture = Architecture(**json.loads(str(arrays["config"]))["architecture"])
+        weights = {name: torch.from_numpy(arrays[name].astype(np.float64)) for name in arrays.files if name != "config"}
+    model = AttentionModel(architecture)
+    values: dict[str, Tensor] = {}
+    for name, module in model.named_modules():
+        if isinstance(module, nn.BatchNorm1d):
+            module.eps = 0.0
+            values[f"{name}.weight"], values[f"{name}.bias"] = weights.pop(f"{name}.scale"), weights.pop(f"{name}.shift")
+            values[f"{name}.running_mean"] = torch.zeros(architecture.width)
+            values[f"{name}.running_var"] = torch.ones(architecture.width)
+            values[f"{name}.num_batches_tracked"] = torch.tensor(0)
+    if architecture.variant == "minmax":
+        values["distance"] = torch.log(torch.expm1(weights.pop("distance_weight")))
+    model.load_state_dict(values | weights)
+    return model.eval()
+
+
+def export(state: State, path: Path, *, dtype: type[np.floating[Any]] = np.float16) -> None:
+    """Write weights for inference: the arrays of `tensors`, and as JSON under ``config`` what they follow from."""
+    config = {
+        "architecture": asdict(state.model.architecture),
+        "training": asdict(state.training),
+        "num_steps": state.num_steps,
+        "elapsed_s": round(state.elapsed_s),
+        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+        "history": state.history,
+    }
+    arrays = {name: array.astype(dtype) for name, array in tensors(state.model).items()}
+    np.savez_compressed(path, allow_pickle=False, config=np.array(json.dumps(config)), **arrays)
