@@ -85,7 +85,7 @@ class Encoding:
     keys, values
         Of the glimpse, shape (farms, heads, nodes, width / heads).
     logit_keys
-        Through the projection of the glimpse, shape (farms, nodes, width).
+        Through the projection of the glimpse, shape (farms, width, nodes).
     aversion
         What the logits lose by the distance of last and next node, shape (farms, nodes, nodes); absent for ``cvrp``.
     """
@@ -125,6 +125,20 @@ class Rollouts:
     max_lengths: Tensor
     total_lengths: Tensor
     num_routes: Tensor
+
+    def select(self, indices: Tensor) -> Rollouts:
+        """Return some rollouts of each farm, `indices` of shape (farms, selected)."""
+        farms = torch.arange(len(indices), device=indices.device)[:, None]
+        return Rollouts(
+            self.actions[farms, indices],
+            self.last_nodes[farms, indices],
+            self.states[farms, indices],
+            self.masks[farms, indices],
+            None if self.logits is None else self.logits[farms, indices],
+            self.max_lengths[farms, indices],
+            self.total_lengths[farms, indices],
+            self.num_routes[farms, indices],
+        )
 
 
 def farms_of(variant: Variant, positions: Tensor, num_routes: int) -> Farms:
@@ -234,7 +248,7 @@ class AttentionModel(nn.Module):
             query,
             keys.reshape(heads).transpose(1, 2).contiguous(),
             values.reshape(heads).transpose(1, 2).contiguous(),
-            logit_keys @ self.glimpse.weight / math.sqrt(width),
+            (logit_keys @ self.glimpse.weight / math.sqrt(width)).transpose(1, 2).contiguous(),
             aversion,
         )
 
@@ -266,7 +280,7 @@ class AttentionModel(nn.Module):
             query.view(heads).transpose(1, 2), encoding.keys, encoding.values, attn_mask=mask[:, None]
         )
         glimpse = glimpse.transpose(1, 2).reshape(query.shape)
-        logits = LOGIT_BOUND * torch.tanh(torch.bmm(glimpse, encoding.logit_keys.transpose(1, 2)))
+        logits = LOGIT_BOUND * torch.tanh(torch.bmm(glimpse, encoding.logit_keys))
         if encoding.aversion is not None:
             aversion = functional.embedding(last_nodes + offsets, encoding.aversion.reshape(-1, num_nodes))
             logits = logits - aversion
@@ -314,7 +328,7 @@ def roll_out(
             action = logits.argmax(dim=2)
         else:
             # One uniform number a choice; below 1 by more than rounding, it never passes the last open node.
-            cumulative = logits.softmax(dim=2).cumsum(dim=2)
+            cumulative = logits.exp().cumsum(dim=2)
             threshold = torch.rand_like(cumulative[:, :, :1]) * (1 - 1e-6) * cumulative[:, :, -1:]
             action = (cumulative <= threshold).sum(dim=2)
         steps.append((action, routing.last, state, mask, logits if keeps_logits else None))
