@@ -31,7 +31,8 @@ def main(weights: Path, fixtures: Path) -> None:
             rollouts = roll_out(model, farms, model.encode(farms), 1, is_greedy=True, keeps_logits=True)
         assert rollouts.logits is not None
         logits = [
-            [round(value, 5) if value > -torch.inf else None for value in step] for step in rollouts.logits[0, 0].tolist()
+            [round(value, 5) if value > -torch.inf else None for value in step]
+            for step in rollouts.logits[0, 0].tolist()
         ]
         cases.append(
             {

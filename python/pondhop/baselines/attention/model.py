@@ -71,7 +71,7 @@ class Farms:
     @property
     def num_ponds(self) -> int:
         """Ponds of each farm."""
-        return self.positions.shape[1] - 1
+        return int(self.positions.shape[1]) - 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,9 +16,9 @@ import json
 import math
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import torch
@@ -26,20 +26,18 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from pondhop import instances
-from pondhop.baselines.attention.model import (
-    Architecture,
-    AttentionModel,
-    Encoding,
-    Rollouts,
-    Variant,
-    costs,
-    farms_of,
-    roll_out,
-)
+from pondhop.baselines.attention.model import Architecture, AttentionModel, Variant, costs, farms_of, roll_out
+from pondhop.errors import Fault, InvalidInput
 
 NODES_PER_STEP = 1600
 """Ponds of all farms of a step together: small farms come in larger batches, so that steps take alike."""
-SYMMETRIES = ((1, 0, 0, 1), (-1, 0, 0, 1), (1, 0, 0, -1), (-1, 0, 0, -1), (0, 1, 1, 0), (0, -1, 1, 0), (0, 1, -1, 0), (0, -1, -1, 0))
+VALIDATION_SEED = 4_000_000_000
+NUM_VALIDATION_FARMS = 64
+SYMMETRIES = torch.tensor(
+    [[[x, 0.0], [0.0, y]] for x in (1, -1) for y in (1, -1)] + [[[0.0, x], [y, 0.0]] for x in (1, -1) for y in (1, -1)],
+    dtype=torch.float64,
+)
+"""Matrices that map the square onto itself, the identity first."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +83,7 @@ class Training:
 
 
 @dataclass
-class State:
+class TrainingState:
     """A training under way."""
 
     training: Training
@@ -96,22 +94,36 @@ class State:
     history: list[dict[str, float]] = field(default_factory=list)
 
 
-def start(training: Training, device: torch.device) -> State:
+def find_device(name: Literal["auto", "cpu", "cuda"]) -> torch.device:
+    """Return the device to train on.
+
+    Raises
+    ------
+    InvalidInput
+        If a GPU is asked for and PyTorch finds none.
+    """
+    has_gpu = torch.cuda.is_available()
+    if name == "cuda" and not has_gpu:
+        raise InvalidInput([Fault("--device", "PyTorch finds no GPU", "train on the CPU, or check the driver")])
+    return torch.device("cuda" if has_gpu and name != "cpu" else "cpu")
+
+
+def start(training: Training, device: torch.device) -> TrainingState:
     """Return a training before its first step."""
     torch.manual_seed(training.seed)
     model = AttentionModel(Architecture(training.variant)).to(device)
     for module in model.modules():
         if isinstance(module, nn.BatchNorm1d):
             module.momentum = 0.02
-    return State(training, model, torch.optim.Adam(model.parameters(), lr=training.learning_rate))
+    return TrainingState(training, model, torch.optim.Adam(model.parameters(), lr=training.learning_rate))
 
 
 def run(
-    state: State,
+    state: TrainingState,
     *,
     num_steps: int | None,
     duration_s: float | None,
-    report: Callable[[State], None],
+    report: Callable[[TrainingState], None],
     report_interval_s: float = 120.0,
 ) -> None:
     """Train until either limit, counted over all runs of this training.
@@ -128,18 +140,20 @@ def run(
         progress = _progress(state, num_steps, duration_s)
         if state.elapsed_s - reported_s > report_interval_s or progress >= 1:
             reported_s = state.elapsed_s
-            state.history.append({"steps": state.num_steps, "minutes": round(state.elapsed_s / 60, 2), **validate(state)})
+            state.history.append(
+                {"steps": state.num_steps, "minutes": round(state.elapsed_s / 60, 2), **validate(state)}
+            )
             report(state)
 
 
-def _progress(state: State, num_steps: int | None, duration_s: float | None) -> float:
+def _progress(state: TrainingState, num_steps: int | None, duration_s: float | None) -> float:
     return max(
         state.num_steps / num_steps if num_steps is not None else 0.0,
         state.elapsed_s / duration_s if duration_s is not None else 0.0,
     )
 
 
-def step(state: State, progress: float) -> float:
+def step(state: TrainingState, progress: float) -> float:
     """Draw farms, roll out, follow the gradient; return the mean cost of the rollouts."""
     training, model = state.training, state.model
     device = next(model.parameters()).device
@@ -194,12 +208,12 @@ def draw(num_ponds: int, num_farms: int, seed: int) -> Tensor:
     return torch.from_numpy(np.stack([np.vstack((farm.depot[None], farm.ponds)) for farm in farms]))
 
 
-def validate(state: State) -> dict[str, float]:
+def validate(state: TrainingState) -> dict[str, float]:
     """Return mean longest route and total of greedy decoding on farms that training does not see."""
     figures: dict[str, float] = {}
     sizes = (50, 100) if state.training.num_ponds[0] < state.training.num_ponds[1] else state.training.num_ponds[:1]
     for num_ponds in sizes:
-        positions = draw(num_ponds, 64, seed=4_000_000_000)
+        positions = draw(num_ponds, NUM_VALIDATION_FARMS, seed=VALIDATION_SEED)
         max_lengths, total_lengths, _ = evaluate(state.model, positions, state.training.usual_num_routes)
         figures[f"max_{num_ponds}"] = round(float(max_lengths.mean()), 4)
         figures[f"total_{num_ponds}"] = round(float(total_lengths.mean()), 4)
@@ -218,23 +232,24 @@ def evaluate(
     variant = model.architecture.variant
     model.eval()
     results = []
-    for xx, xy, yx, yy in SYMMETRIES if has_symmetries else SYMMETRIES[:1]:
-        turn = torch.tensor([[xx, xy], [yx, yy]], dtype=positions.dtype)
-        turned = (positions - 0.5) @ turn + 0.5
+    for symmetry in SYMMETRIES if has_symmetries else SYMMETRIES[:1]:
+        turned = (positions - 0.5) @ symmetry + 0.5
         farms = farms_of(variant, turned.to(device), num_routes)
         rollouts = roll_out(model, farms, model.encode(farms), 1, is_greedy=True)
         scale = torch.ones(len(positions), dtype=positions.dtype)
         if variant == "minmax":
             scale = (positions - positions[:, :1]).norm(dim=2).amax(dim=1)
         figures = (costs(variant, farms, rollouts), rollouts.max_lengths, rollouts.total_lengths)
-        results.append(torch.stack([*(scale * figure[:, 0].cpu() for figure in figures), rollouts.num_routes[:, 0].cpu()]))
+        results.append(
+            torch.stack([*(scale * figure[:, 0].cpu() for figure in figures), rollouts.num_routes[:, 0].cpu()])
+        )
     stacked = torch.stack(results)
     best = stacked[:, 0].argmin(dim=0)
     chosen = stacked[best, :, torch.arange(len(positions))]
     return chosen[:, 1], chosen[:, 2], chosen[:, 3]
 
 
-def save(state: State, path: Path) -> None:
+def save(state: TrainingState, path: Path) -> None:
     """Write all that `load` needs to go on."""
     temporary = path.with_name(path.name + ".part")
     torch.save(
@@ -251,12 +266,10 @@ def save(state: State, path: Path) -> None:
     temporary.replace(path)
 
 
-def load(path: Path, device: torch.device) -> State:
+def load(path: Path, device: torch.device) -> TrainingState:
     """Read a training that `save` wrote."""
     saved: dict[str, Any] = torch.load(path, map_location=device, weights_only=True)
-    values = saved["training"]
-    training = Training(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})
-    state = start(training, device)
+    state = start(Training(**saved["training"]), device)
     state.model.load_state_dict(saved["model"])
     state.optimizer.load_state_dict(saved["optimizer"])
     state.num_steps, state.elapsed_s, state.history = saved["num_steps"], saved["elapsed_s"], saved["history"]
@@ -296,17 +309,21 @@ def read_weights(path: Path) -> AttentionModel:
     for name, module in model.named_modules():
         if isinstance(module, nn.BatchNorm1d):
             module.eps = 0.0
-            values[f"{name}.weight"], values[f"{name}.bias"] = weights.pop(f"{name}.scale"), weights.pop(f"{name}.shift")
+            values[f"{name}.weight"], values[f"{name}.bias"] = (
+                weights.pop(f"{name}.scale"),
+                weights.pop(f"{name}.shift"),
+            )
             values[f"{name}.running_mean"] = torch.zeros(architecture.width)
             values[f"{name}.running_var"] = torch.ones(architecture.width)
             values[f"{name}.num_batches_tracked"] = torch.tensor(0)
     if architecture.variant == "minmax":
         values["distance"] = torch.log(torch.expm1(weights.pop("distance_weight")))
     model.load_state_dict(values | weights)
-    return model.eval()
+    model.eval()
+    return model
 
 
-def export(state: State, path: Path, *, dtype: type[np.floating[Any]] = np.float16) -> None:
+def export(state: TrainingState, path: Path, *, dtype: type[np.floating[Any]] = np.float16) -> None:
     """Write weights for inference: the arrays of `tensors`, and as JSON under ``config`` what they follow from."""
     config = {
         "architecture": asdict(state.model.architecture),
