@@ -19,6 +19,7 @@ import typer
 
 from pondhop.cli_bench import bench
 from pondhop.cli_shared import Advance, Json, progress
+from pondhop.cli_train import train_am
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:
@@ -418,6 +419,9 @@ def generate_farm(
     write_farm(output, farm)
     message = {"farm": str(output), "num_ponds": len(farm.ponds)}
     typer.echo(json.dumps(message) if as_json else f"Written to {output}: {len(farm.ponds)} ponds")
+
+
+app.command(no_args_is_help=True)(train_am)
 
 
 def _fleet(num_drones: int | None, path: Path | None, sampling: SamplingStyle | None) -> Fleet:
