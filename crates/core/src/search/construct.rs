@@ -3,8 +3,9 @@
 //! Sources: the sweep of Gillett and Miller, Operations Research 1974, with the sectors balanced by the cost of their tours
 //! instead of by load; Bartholdi and Platzman, Management Science 1988, for the curve as a tour.
 //!
-//! A sweep beats cutting one giant tour on farms: the routes of good min-max plans are petals around the depot. Which petals
-//! depends on where the first sector begins, so the search starts from several rotations. O(n log n).
+//! A sweep beats cutting one giant tour on farms: the routes of good min-max plans are petals around the depot. The first sector
+//! begins at the widest gap, which is where the farm ends if the depot is at its edge. Which petals are best cannot be seen
+//! from the sectors, so the search starts from several cuts. O(n log n).
 
 use super::budget::Budget;
 use super::improve::improve_ring;
@@ -35,25 +36,22 @@ impl<'a> Sweep<'a> {
         Self { network, visits: keyed.into_iter().map(|entry| entry.1).collect(), curve_keys: curve_keys(points) }
     }
 
-    /// `num_routes` routes from sectors whose first begins at `rotation` (0 to 1) of a mean sector, balanced by the length of
-    /// their curves.
-    pub fn sectors(&self, rotation: f64, num_routes: usize) -> Vec<Vec<u32>> {
+    /// One route from each of as many sectors as there are `shares`; the cost of a sector's curve is about its share of all.
+    pub fn sectors(&self, shares: &[f64]) -> Vec<Vec<u32>> {
         let num_visits = self.network.num_visits;
-        let start = (rotation * num_visits as f64 / num_routes as f64) as usize;
-        let mut ends: Vec<usize> = (0..=num_routes).map(|route| route * num_visits / num_routes).collect();
-        let mut routes = self.tour_sectors(start, &ends);
+        let mut ends = ends_by_cost(&[0, num_visits], &[1.0], shares);
+        let mut routes = self.tour_sectors(&ends);
         for _ in 0..NUM_BALANCINGS {
             let costs: Vec<f64> = routes.iter().map(|route| self.network.route_cost(route)).collect();
-            ends = balanced_ends(&ends, &costs);
-            routes = self.tour_sectors(start, &ends);
+            ends = ends_by_cost(&ends, &costs, shares);
+            routes = self.tour_sectors(&ends);
         }
         routes
     }
 
-    fn tour_sectors(&self, start: usize, ends: &[usize]) -> Vec<Vec<u32>> {
+    fn tour_sectors(&self, ends: &[usize]) -> Vec<Vec<u32>> {
         let tour = |range: &[usize]| {
-            let mut route: Vec<u32> =
-                (range[0]..range[1]).map(|place| self.visits[(start + place) % self.visits.len()]).collect();
+            let mut route = self.visits[range[0]..range[1]].to_vec();
             route.sort_unstable_by_key(|&visit| (self.curve_keys[visit as usize], visit));
             open_at_best_leg(self.network, &mut route);
             route
@@ -91,23 +89,23 @@ pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mu
     }
 }
 
-/// Moves the sector ends so that each holds the same cost, were cost spread evenly within each sector.
-fn balanced_ends(ends: &[usize], costs: &[f64]) -> Vec<usize> {
-    let goal = costs.iter().sum::<f64>() / costs.len() as f64;
-    let num_visits = ends[ends.len() - 1];
-    let mut balanced = vec![0];
-    let mut sum = 0.0;
-    for (range, cost) in ends.windows(2).zip(costs) {
+/// Ends of new sectors, each with its share of the cost, were cost spread evenly within each old sector.
+fn ends_by_cost(old_ends: &[usize], old_costs: &[f64], shares: &[f64]) -> Vec<usize> {
+    let cost_of_a_share = old_costs.iter().sum::<f64>() / shares.iter().sum::<f64>();
+    let mut ends = vec![0];
+    let (mut sum, mut goal) = (0.0, shares[0] * cost_of_a_share);
+    for (range, cost) in old_ends.windows(2).zip(old_costs) {
         let size = range[1] - range[0];
         for place in 0..size {
             sum += cost / size as f64;
-            if sum >= goal * balanced.len() as f64 && balanced.len() < costs.len() {
-                balanced.push(range[0] + place + 1);
+            if sum >= goal && ends.len() < shares.len() {
+                goal += shares[ends.len()] * cost_of_a_share;
+                ends.push(range[0] + place + 1);
             }
         }
     }
-    balanced.resize(ends.len(), num_visits);
-    balanced
+    ends.resize(shares.len() + 1, old_ends[old_ends.len() - 1]);
+    ends
 }
 
 /// Grows with the angle of `(x, y)` from 0 to 4, without trigonometry: the same on every machine.

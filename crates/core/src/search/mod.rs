@@ -4,7 +4,7 @@
 //! service times and a fixed time per leg. Costs are seconds, which in a research instance are length units.
 //!
 //! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
-//! (`improve`); if the effort allows, a race of several rotations of the sectors; from the winner, ruin (`ruin`) and
+//! (`improve`); if the effort allows, a race of several cuts of the sectors; from the winner, ruin (`ruin`) and
 //! recreate (`recreate`) under annealing (`anneal`), first for the longest route, then for the total with the longest route
 //! as a limit. Threads share their best plans now and then (`cooperate`).
 //!
@@ -23,6 +23,7 @@ mod ruin;
 mod state;
 
 use crate::problem::Problem;
+use crate::random::Random;
 pub(crate) use airspace::Airspace;
 use airspace::SharedAirspace;
 pub(crate) use anneal::{Chain, Schedule};
@@ -99,8 +100,10 @@ const MEETINGS: [f64; 2] = [0.5, 0.7];
 const MAX_END: f64 = 0.88;
 /// Starts in a race, at most.
 const MAX_STARTS: usize = 16;
+/// How far the shares of the sectors of a start are from equal, at most: wide enough for other petals to win.
+const SHARE_SPREAD: f64 = 0.3;
 /// Steps per visit and start below which a race gains less than it costs.
-const RACE_STEPS_PER_VISIT: f64 = 25.0;
+const RACE_STEPS_PER_VISIT: f64 = 5.0;
 /// Steps that take as long as making a start, per visit.
 const START_STEPS_PER_VISIT: f64 = 0.3;
 /// How long finding neighbours takes, in times of the rough plan.
@@ -119,7 +122,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);
     if options.start.is_none() {
-        let mut rough = Sweep::new(&network).sectors(0.0, network.num_routes);
+        let mut rough = Sweep::new(&network).sectors(&vec![1.0; network.num_routes]);
         // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
         if budget.share(0) * NEIGHBOURS_COST > 1.0 {
             rough.iter_mut().for_each(|route| smooth(&network, route));
@@ -180,22 +183,19 @@ impl Search<'_> {
     /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until one is left.
     fn race(&self, thread: usize) -> Chain<SharedAirspace> {
         let sweep = Sweep::new(self.network);
-        let start = |rotation: f64, stream: u64| {
-            let mut routes = sweep.sectors(rotation, self.network.num_routes);
+        let start = |index: usize| {
+            let stream = (index * self.options.num_threads + thread) as u64;
+            let mut routes = sweep.sectors(&self.shares(stream));
             improve_routes(self.network, self.budget, &mut routes);
             self.chain_from(&routes, stream)
         };
-        let offset = thread as f64 / self.options.num_threads as f64;
         let begin = self.budget.share(0);
-        let mut chains = vec![start(offset, thread as u64)];
+        let mut chains = vec![start(0)];
         let start_steps = START_STEPS_PER_VISIT * self.network.num_visits as f64;
         let start_share = self.budget.share_of_work(start_steps, begin);
         let num_starts = (START_STEPS_PER_VISIT / RACE_STEPS_PER_VISIT / start_share) as usize;
         let num_starts = num_starts.clamp(1, MAX_STARTS);
-        for index in 1..num_starts {
-            let rotation = index as f64 / num_starts as f64 + offset;
-            chains.push(start(rotation, (index * self.options.num_threads + thread) as u64));
-        }
+        chains.extend((1..num_starts).map(start));
         let mut num_iterations = 0;
         while chains.len() > 1 {
             let begin = self.budget.share(num_iterations);
@@ -219,6 +219,17 @@ impl Search<'_> {
         winner
     }
 
+    /// Shares of the sectors of a start: equal for the first, random about that for the others.
+    fn shares(&self, stream: u64) -> Vec<f64> {
+        let spread = if stream == 0 { 0.0 } else { SHARE_SPREAD };
+        let mut random = Random::new(self.seed(stream));
+        (0..self.network.num_routes).map(|_| 1.0 + spread * (2.0 * random.uniform() - 1.0)).collect()
+    }
+
+    fn seed(&self, stream: u64) -> u64 {
+        self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP))
+    }
+
     /// Up to which cost the longest route does not matter.
     fn goal_cap(&self) -> f64 {
         if self.options.goal == Goal::Max { 0.0 } else { self.network.max_route_cost }
@@ -230,7 +241,7 @@ impl Search<'_> {
         let sweep = Sweep::new(self.network);
         let mut num_routes = 1;
         loop {
-            let mut routes = sweep.sectors(0.0, num_routes);
+            let mut routes = sweep.sectors(&vec![1.0; num_routes]);
             improve_routes(self.network, self.budget, &mut routes);
             let chain = self.chain_from(&routes, thread as u64);
             if num_routes == self.network.num_routes || chain.best.max_route_cost() <= self.goal_cap() {
@@ -243,8 +254,7 @@ impl Search<'_> {
     fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain<SharedAirspace> {
         let state = State::new(self.network, routes);
         let objective = Objective::longest_route(self.network, &state);
-        let seed = self.options.seed.wrapping_add(stream.wrapping_mul(STREAM_STEP));
-        Chain::new(self.network, state, objective, seed, SharedAirspace)
+        Chain::new(self.network, state, objective, self.seed(stream), SharedAirspace)
     }
 
     /// Only the total counts, while no route may outgrow the longest one, and the slack it is given.
