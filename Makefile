@@ -70,7 +70,7 @@ $(VENV)/installed: Cargo.lock $(RUST_SOURCES) pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "pondhop needs Python 3.11 or newer; set PYTHON=")'
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install maturin
-	$(BIN)/maturin develop --release --locked --quiet --extras plot,dev,baselines
+	$(BIN)/maturin develop --release --locked --quiet --extras plot,report,dev,baselines
 	@touch $@
 
 $(TRAIN_VENV)/installed: Cargo.lock $(RUST_SOURCES) pyproject.toml constraints.txt

@@ -94,7 +94,7 @@ def faults_of(*arguments: object) -> list[str]:
 
 def run_all(requests: Sequence[Request], folder: Path, num_jobs: int = 1) -> list[Run]:
     results = Results(folder)
-    execute.execute(requests, results, num_jobs=num_jobs, advance=lambda: None)
+    execute.execute(requests, results, num_jobs=num_jobs, advance=lambda _request: None)
     return read_results(results.path)
 
 

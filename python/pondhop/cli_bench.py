@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -52,7 +53,10 @@ def run(
         typer.Option(metavar="N,N,...", help="Routes allowed; else each number that --best-known has for a farm."),
     ] = None,
     planners: Annotated[
-        str, typer.Option(metavar="NAME,NAME,...", help="Planners, with options as in search:threads=2.")
+        str,
+        typer.Option(
+            metavar="NAME,NAME,...", help="Planners, with options as in search:threads=2; yours as MODULE:FUNCTION."
+        ),
     ] = "search",
     time_limits: Annotated[
         str | None, typer.Option(metavar="S,S,...", help="Wall seconds for a farm; else as the planner likes.")
@@ -109,7 +113,7 @@ def run(
     limits = _time_limits(time_limits, seconds_per_node, faults)
     chosen_seeds = _numbers("--seeds", seeds, int, 0, faults)
     entrants: list[Entrant] = []
-    with _collecting(faults):
+    with _collecting(faults), _modules_of_this_folder():
         entrants += parse_entrants(planners)
     tasks: list[farm_sets.Task] = []
     if routes is None or num_routes:
@@ -122,8 +126,8 @@ def run(
     results = Results(output, is_keeping_plans=keep_plans)
     finished = results.finished
     missing = [request for request in requested if request.key not in finished]
-    with _broken_pipes_as_errors(), progress("Running", total=len(missing)) as advance:
-        execute.execute(missing, results, num_jobs=jobs, advance=advance)
+    with _broken_pipes_as_errors(), _modules_of_this_folder(), progress("Running", total=len(missing)) as advance:
+        execute.execute(missing, results, num_jobs=jobs, advance=lambda _request: advance())
     comparison = Comparison(read_results(results.path), known)
     table_path = output / TABLE_NAME
     write_all({table_path: markdown(comparison, _name(best_known_files))})
@@ -170,6 +174,71 @@ def table(
         typer.echo(json.dumps(_rows(comparison), indent=1))
     elif output is None:
         typer.echo(page, nl=False)
+
+
+@bench.command(no_args_is_help=True)
+def paper(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the report, its data and its pictures.")],
+    quick: Annotated[
+        bool, typer.Option("--quick", help="10 farms of each size instead of 100: minutes instead of hours.")
+    ] = False,
+    planner: Annotated[
+        list[str] | None, typer.Option(metavar="MODULE:FUNCTION", help="A planner of your own to compare, too.")
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Runs at once; more than idle cores falsifies the times.")] = 1,
+    as_json: Json = False,
+) -> None:
+    """Compare all planners as the paper does: its tables and figures from new measurements, as one page to send.
+
+    - `pondhop bench paper -o report`
+    - `pondhop bench paper -o report --quick --planner my_module:my_planner`
+
+    Writes report.html, which needs no other file, report.md, and the data as CSV files. Baselines that are not
+    installed are left out, and the report says so. What is measured already is not run again, as long as the code
+    that plans is the same: the same command goes on where it was stopped.
+    """
+    from pondhop.report import scope as scopes
+    from pondhop.report.methods import METHODS, installed, own_methods
+    from pondhop.report.page import require_packages, write_report
+    from pondhop.report.study import Study, execute_study, seconds_missing
+    from pondhop.report.tables import Tables
+
+    scope = scopes.QUICK if quick else scopes.FULL
+    faults: list[Fault] = []
+    own = []
+    with _collecting(faults):
+        require_packages()
+    with _collecting(faults), _modules_of_this_folder():
+        own += own_methods(planner or (), max(scope.num_ponds))
+    if faults:
+        raise InvalidInput(faults)
+    methods, left_out = installed(METHODS)
+    study = Study(scope, [*methods, *own], left_out)
+    seconds = seconds_missing(study, output)
+    with _broken_pipes_as_errors(), _modules_of_this_folder(), progress("Measuring", total=seconds) as advance:
+        measurements, num_new = execute_study(
+            study, output, num_jobs=jobs, advance=lambda seconds: advance(size=seconds)
+        )
+    files = write_report(Tables(measurements), output)
+    if as_json:
+        left = [asdict(method) for method in left_out]
+        answer = {"num_new_runs": num_new, "left_out": left, "files": list(map(str, files))}
+        typer.echo(json.dumps(answer, indent=1))
+    else:
+        for method in left_out:
+            typer.echo(f"Left out: {method.label}: {method.reason} ({method.action})", err=True)
+        typer.echo(f"Written to {output}: {files[0].name} and {len(files) - 1} other files; {num_new} new runs")
+
+
+@contextmanager
+def _modules_of_this_folder() -> Iterator[None]:
+    """Find the user's modules in the current folder, as `python -m` does."""
+    folder = str(Path.cwd())
+    sys.path.insert(0, folder)
+    try:
+        yield
+    finally:
+        sys.path.remove(folder)
 
 
 @contextmanager

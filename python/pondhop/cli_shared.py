@@ -18,17 +18,17 @@ Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults
 class Advance(Protocol):
     """What advances a progress bar."""
 
-    def __call__(self, share: float = 1.0, note: str = "") -> None:
-        """Go to the end of the current step, or to a share of it."""
+    def __call__(self, share: float = 1.0, note: str = "", size: float = 1.0) -> None:
+        """Go to the end of the current step, or to a share of it; `size` is how much of the total the step is."""
 
 
-def _advance_nothing(share: float = 1.0, note: str = "") -> None:
+def _advance_nothing(share: float = 1.0, note: str = "", size: float = 1.0) -> None:
     """Stand in where nobody watches."""
 
 
 @contextmanager
-def progress(description: str, total: int) -> Iterator[Advance]:
-    """Show a progress bar on stderr once something has taken two seconds; yield what advances it by one."""
+def progress(description: str, total: float) -> Iterator[Advance]:
+    """Show a progress bar on stderr once something has taken two seconds; yield what advances it."""
     if not sys.stderr.isatty():
         yield _advance_nothing
         return
@@ -38,12 +38,12 @@ def progress(description: str, total: int) -> Iterator[Advance]:
     bar = Progress(console=Console(stderr=True), transient=True)
     task = bar.add_task(description, total=total)
     start = Timer(SECONDS_BEFORE_PROGRESS, bar.start)
-    num_done = 0
+    done = 0.0
 
-    def advance(share: float = 1.0, note: str = "") -> None:
-        nonlocal num_done
-        bar.update(task, completed=num_done + share, description=f"{description} {note}".rstrip())
-        num_done += share >= 1.0
+    def advance(share: float = 1.0, note: str = "", size: float = 1.0) -> None:
+        nonlocal done
+        bar.update(task, completed=done + share * size, description=f"{description} {note}".rstrip())
+        done += size if share >= 1.0 else 0.0
 
     start.start()
     try:

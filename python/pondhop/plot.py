@@ -43,7 +43,7 @@ _MAP_SIZE_IN, _MAX_SIDE_IN = 6.5, 10.0
 
 
 @dataclass(frozen=True)
-class _Look:
+class Look:
     """Colours of everything but the routes."""
 
     background: str
@@ -55,10 +55,11 @@ class _Look:
     no_fly: str
 
 
-_LOOKS: dict[Theme, _Look] = {
-    "light": _Look("#FFFFFF", "#1F2933", "#5F6C7B", "#DCEBF5", "#A9C4D8", "#8494A5", "#C0392B"),
-    "dark": _Look("#14191F", "#E8EDF2", "#9AA8B7", "#1F3342", "#3C5A70", "#71808F", "#FF6B5E"),
+LOOKS: dict[Theme, Look] = {
+    "light": Look("#FFFFFF", "#1F2933", "#5F6C7B", "#DCEBF5", "#A9C4D8", "#8494A5", "#C0392B"),
+    "dark": Look("#14191F", "#E8EDF2", "#9AA8B7", "#1F3342", "#3C5A70", "#71808F", "#FF6B5E"),
 }
+"""By theme; pages that show pictures use the same background."""
 
 
 def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "light") -> Axes:
@@ -81,15 +82,15 @@ def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "li
     farm, solution = farm_plan.farm, farm_plan.solution
     plan = solution.plan
     frame = LocalFrame(*farm.depot)
-    look = _LOOKS[theme]
+    look = LOOKS[theme]
     outlines = [_local(frame, ring) for pond in farm.ponds for ring in pond.outline[:1]]
     fences = [_local(frame, rings[0]) for rings in farm.fences]
     zones = [_local(frame, rings[0]) for rings in farm.no_fly]
     extent = np.vstack([solution.problem.depot[None], solution.problem.ponds, *outlines, *fences, *zones])
-    ax = _prepared(ax, extent, look)
-    _draw_areas(ax, outlines, facecolor=look.water, edgecolor=look.shore, linewidth=0.6, zorder=1)
-    _draw_areas(ax, fences, facecolor="none", edgecolor=look.outline, linewidth=1.0, linestyle="--", zorder=1)
-    _draw_areas(ax, zones, facecolor="none", edgecolor=look.no_fly, linewidth=1.0, hatch="////", zorder=1)
+    ax = prepared_axes(ax, extent, look)
+    draw_areas(ax, outlines, facecolor=look.water, edgecolor=look.shore, linewidth=0.6, zorder=1)
+    draw_areas(ax, fences, facecolor="none", edgecolor=look.outline, linewidth=1.0, linestyle="--", zorder=1)
+    draw_areas(ax, zones, facecolor="none", edgecolor=look.no_fly, linewidth=1.0, hatch="////", zorder=1)
     labels = [
         f"{length:,.0f} m, {len(route)} ponds, {duration / 60:,.0f} min"
         for route, length, duration in zip(plan.routes, plan.route_lengths, plan.route_durations_s, strict=True)
@@ -141,10 +142,10 @@ def plot_solution(
         If a route names a pond that does not exist.
     """
     plan = evaluate(problem, routes)
-    look = _LOOKS[theme]
+    look = LOOKS[theme]
     outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
-    ax = _prepared(ax, np.vstack([problem.depot[None], problem.ponds, *outline]), look)
-    _draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
+    ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *outline]), look)
+    draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
     labels = [
         f"{length:.3f}, {len(route)} ponds" for route, length in zip(plan.routes, plan.route_lengths, strict=True)
     ]
@@ -183,15 +184,15 @@ def plot_clusters(
     Axes
         In the units of the farm.
     """
-    look = _LOOKS[theme]
+    look = LOOKS[theme]
     outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
     paths = [path for _, _, path in clusters]
-    ax = _prepared(ax, np.vstack([problem.depot[None], problem.ponds, *paths, *outline]), look)
-    _draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
+    ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *paths, *outline]), look)
+    draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
     for index, (ponds, hull, path) in enumerate(clusters):
         colour, cycle = route_colour(index), index // len(ROUTE_COLOURS)
         corners = problem.ponds[hull]
-        _draw_areas(ax, [corners], facecolor=(colour, 0.10), edgecolor=(colour, 0.6), linewidth=1.0, zorder=2)
+        draw_areas(ax, [corners], facecolor=(colour, 0.10), edgecolor=(colour, 0.6), linewidth=1.0, zorder=2)
         ax.plot(*path.T, color=colour, linewidth=1.4, linestyle=_LINE_STYLES[cycle % 4], zorder=3)
         ax.plot(
             *problem.ponds[ponds].T,
@@ -202,7 +203,7 @@ def plot_clusters(
             label=f"{index + 1}: {len(ponds)} ponds",
             zorder=4,
         )
-    _draw_depot(ax, problem, look)
+    draw_depot(ax, problem, look)
     _write_legend(ax, look)
     _write_title(
         ax, f"{problem.num_ponds} ponds, {len(clusters)} clusters", ["convex hulls", "back-and-forth paths"], look
@@ -239,8 +240,8 @@ def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
         figure.savefig(path, dpi=160, metadata=metadata, bbox_inches="tight", pad_inches=0.2)
 
 
-def _prepared(ax: Axes | None, extent: Points, look: _Look) -> Axes:
-    """Axes of equal aspect around ``extent``, shape (n, 2), on a figure whose shape suits it."""
+def prepared_axes(ax: Axes | None, extent: Points, look: Look) -> Axes:
+    """Return axes of equal aspect around ``extent``, shape (n, 2); a figure of their own gets a shape that suits it."""
     (west, south), (east, north) = extent.min(axis=0), extent.max(axis=0)
     margin = 0.04 * max(east - west, north - south) or 1.0
     width, height = east - west + 2 * margin, north - south + 2 * margin
@@ -270,14 +271,15 @@ def _local(frame: LocalFrame, ring: Ring) -> Points:
     return frame.to_local(np.array(ring, dtype=np.float64))
 
 
-def _draw_areas(ax: Axes, rings: Sequence[Points], **style: object) -> None:
+def draw_areas(ax: Axes, rings: Sequence[Points], **style: object) -> None:
+    """Fill polygons, each of shape (k, 2)."""
     from matplotlib.collections import PolyCollection
 
     if rings:
         ax.add_collection(PolyCollection(list(rings), **style), autolim=False)  # type: ignore[arg-type]
 
 
-def _draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], look: _Look) -> None:
+def _draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], look: Look) -> None:
     """Each route with the hull of its ponds, its number in the hull's middle, and a line in the legend."""
     diagonal = float(np.hypot(np.diff(ax.get_xlim()), np.diff(ax.get_ylim()))[0])
     marker_size = _marker_size(problem)
@@ -303,7 +305,7 @@ def _draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], 
     unserved = problem.ponds[plan.unserved]
     if len(unserved):
         ax.plot(*unserved.T, "x", color=look.no_fly, markersize=6, markeredgewidth=1.6, zorder=5, label="not visited")
-    _draw_depot(ax, problem, look)
+    draw_depot(ax, problem, look)
     _write_legend(ax, look)
 
 
@@ -311,7 +313,8 @@ def _marker_size(problem: Problem) -> float:
     return float(np.clip(60 / np.sqrt(problem.num_ponds), 1.8, 5.0))
 
 
-def _draw_depot(ax: Axes, problem: Problem, look: _Look) -> None:
+def draw_depot(ax: Axes, problem: Problem, look: Look) -> None:
+    """Mark where drones start."""
     ax.plot(
         *problem.depot,
         color=look.ink,
@@ -324,7 +327,7 @@ def _draw_depot(ax: Axes, problem: Problem, look: _Look) -> None:
     )
 
 
-def _write_legend(ax: Axes, look: _Look) -> None:
+def _write_legend(ax: Axes, look: Look) -> None:
     ax.legend(
         loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0, frameon=False, labelcolor=look.ink, fontsize=9
     )
@@ -335,7 +338,7 @@ def _draw_hull(ax: Axes, ponds: Points, colour: str) -> None:
 
     hull = shapely.MultiPoint(ponds).convex_hull
     if isinstance(hull, shapely.Polygon):
-        _draw_areas(ax, [np.array(hull.exterior.coords)], facecolor=(colour, 0.10), edgecolor=(colour, 0.45), zorder=2)
+        draw_areas(ax, [np.array(hull.exterior.coords)], facecolor=(colour, 0.10), edgecolor=(colour, 0.45), zorder=2)
 
 
 def _draw_arrows(ax: Axes, path: Points, colour: str, distance: float) -> None:
@@ -358,7 +361,7 @@ def _draw_arrows(ax: Axes, path: Points, colour: str, distance: float) -> None:
             flown = 0.0
 
 
-def _draw_numbers(ax: Axes, problem: Problem, plan: Plan, look: _Look) -> None:
+def _draw_numbers(ax: Axes, problem: Problem, plan: Plan, look: Look) -> None:
     """Write the number of each route at the pond of it that is farthest from the depot."""
     for index, route in enumerate(plan.routes):
         ponds = problem.ponds[route]
@@ -376,7 +379,7 @@ def _draw_numbers(ax: Axes, problem: Problem, plan: Plan, look: _Look) -> None:
         )
 
 
-def _draw_scale_bar(ax: Axes, look: _Look) -> None:
+def _draw_scale_bar(ax: Axes, look: Look) -> None:
     """A bar of a round number of metres below the map, about a fifth of its width."""
     west, east = ax.get_xlim()
     south, north = ax.get_ylim()
@@ -392,7 +395,7 @@ def _draw_scale_bar(ax: Axes, look: _Look) -> None:
     ax.text(west + length_m + gap, bar_y, text, ha="left", va="center", fontsize=9, color=look.ink)
 
 
-def _write_title(ax: Axes, name: str, parts: Sequence[str], look: _Look) -> None:
+def _write_title(ax: Axes, name: str, parts: Sequence[str], look: Look) -> None:
     ax.set_title(name, loc="left", fontsize=13, fontweight="bold", color=look.ink, pad=22)
     ax.annotate(
         " · ".join(parts),

@@ -28,7 +28,9 @@ def requests(
     ]
 
 
-def execute(missing: Sequence[Request], results: Results, *, num_jobs: int = 1, advance: Callable[[], object]) -> None:
+def execute(
+    missing: Sequence[Request], results: Results, *, num_jobs: int = 1, advance: Callable[[Request], object]
+) -> None:
     """Run what is asked for and add each run to the results as soon as it is finished.
 
     Planners run in processes of their own, one for each job, so that neither a progress bar nor another planner takes
@@ -43,7 +45,7 @@ def execute(missing: Sequence[Request], results: Results, *, num_jobs: int = 1, 
     num_jobs
         How many run at once.
     advance
-        Called after each run.
+        Called with each request when its run is finished.
 
     Raises
     ------
@@ -58,14 +60,15 @@ def execute(missing: Sequence[Request], results: Results, *, num_jobs: int = 1, 
         try:
             # No more are handed over than run at once: farms are not held twice, and an end is an end at once.
             waiting = iter(missing)
-            under_way = {pool.submit(_measure_warm, request) for request in islice(waiting, num_jobs)}
+            under_way = {pool.submit(_measure_warm, request): request for request in islice(waiting, num_jobs)}
             while under_way:
-                finished, under_way = wait(under_way, return_when=FIRST_COMPLETED)
-                under_way |= {pool.submit(_measure_warm, request) for request in islice(waiting, len(finished))}
-                for future in finished:
+                finished, _ = wait(under_way, return_when=FIRST_COMPLETED)
+                done = {future: under_way.pop(future) for future in finished}
+                under_way |= {pool.submit(_measure_warm, request): request for request in islice(waiting, len(done))}
+                for future, request in done.items():
                     run, routes = future.result()
                     results.add(run, routes)
-                    advance()
+                    advance(request)
         except BaseException:
             for process in set(multiprocessing.active_children()) - others:
                 process.terminate()

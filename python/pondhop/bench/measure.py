@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import math
 import platform
 from collections.abc import Mapping
@@ -86,7 +87,8 @@ class Request:
         """What tells this run from others; see `Run.key`."""
         farm = self.task.farm
         name = (farm.set_name, farm.index, farm.digest)
-        return (*name, self.task.num_routes, self.entrant.label, str(self.time_limit), self.seed, build_digest())
+        build = build_digest(self.entrant.planner)
+        return (*name, self.task.num_routes, self.entrant.label, str(self.time_limit), self.seed, build)
 
 
 @dataclass(frozen=True)
@@ -153,10 +155,11 @@ class Run:
 
 
 def parse_entrants(text: str) -> list[Entrant]:
-    """Return the planners and options of ``name,name:option=value:option=value``.
+    """Return the planners and options of ``name,name:option=value:option=value,module:function``.
 
     Options are the fields of `pondhop.planners.Effort` that hold a number or a word; a short run on two ponds shows
-    whether the planner is there and takes their values.
+    whether the planner is there and takes their values. ``module:function`` is a planner of your own: see
+    `pondhop.planners.PlannerFunction`.
 
     Raises
     ------
@@ -175,6 +178,12 @@ def parse_entrants(text: str) -> list[Entrant]:
 
 def _parse_entrant(text: str, faults: list[Fault]) -> Entrant:
     name, *assignments = text.split(":")
+    planner: str | PlannerFunction = name
+    if assignments and "=" not in assignments[0] and name not in planners.PLANNERS:
+        function = _imported(name, assignments.pop(0), faults)
+        if function is None:
+            return Entrant(text, name)
+        planner = function
     options: dict[str, int | float | str] = {}
     known = {option.name for option in dataclasses.fields(planners.Effort)} - {
         "seed",
@@ -189,7 +198,7 @@ def _parse_entrant(text: str, faults: list[Fault]) -> Entrant:
         else:
             action = f"give OPTION=VALUE with one of: {', '.join(sorted(known))}"
             faults.append(Fault(f"planner {text}", f"{assignment!r} is not an option of a planner", action))
-    entrant = Entrant(text, name, options)
+    entrant = Entrant(text, planner, options)
     try:
         warm_up(entrant)
     except InvalidInput as error:
@@ -197,6 +206,27 @@ def _parse_entrant(text: str, faults: list[Fault]) -> Entrant:
     except TypeError as error:
         faults.append(Fault(f"planner {text}", f"an option is of another type: {error}", "give numbers as digits"))
     return entrant
+
+
+def _imported(module_name: str, function_name: str, faults: list[Fault]) -> PlannerFunction | None:
+    """Return the function, or add the fault that there is none. What its module raises is for its author to see."""
+    place = f"planner {module_name}:{function_name}"
+    action = "give MODULE:FUNCTION of a planner of your own, its module in the current folder or installed"
+    if not all(part.isidentifier() for part in module_name.split(".")):
+        faults.append(Fault(place, f"{module_name!r} is not the name of a module", action))
+        return None
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        if error.name is None or not f"{module_name}.".startswith(f"{error.name}."):
+            raise
+        faults.append(Fault(place, f"there is no module {error.name!r}", action))
+        return None
+    function: PlannerFunction | None = getattr(module, function_name, None)
+    if not callable(function):
+        faults.append(Fault(place, f"there is no function {function_name!r} in {module_name}", action))
+        return None
+    return function
 
 
 def _value(text: str) -> int | float | str:
@@ -265,7 +295,7 @@ def measure(request: Request) -> tuple[Run, list[list[int]]]:
         cpu_s=solution.cpu_s,
         version=__version__,
         commit=commit(),
-        build=build_digest(),
+        build=build_digest(entrant.planner),
         python=platform.python_version(),
         machine=machine(),
         finished_at=datetime.now(UTC).isoformat(timespec="seconds"),

@@ -3,21 +3,37 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
 import platform
 import subprocess
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pondhop import _core, planners
+
+if TYPE_CHECKING:
+    from pondhop.planners import PlannerFunction
 
 _REPOSITORY = Path(__file__).resolve().parents[3]
 
 
+def build_digest(planner: str | PlannerFunction) -> str:
+    """Return 12 hexadecimal digits that change with the code that plans.
+
+    That is the native core and the planners of this package; for a planner of your own also the file that it lies in.
+    """
+    files = [_core.__file__, planners.__file__]
+    if callable(planner):
+        code = planner if inspect.isroutine(planner) else type(planner)
+        source = inspect.getsourcefile(code)
+        files += [source] if source is not None and Path(source).exists() else []
+    return _digest(*files)
+
+
 @cache
-def build_digest() -> str:
-    """Return 12 hexadecimal digits that change with the code that plans: the native core and the planners."""
-    files = (_core.__file__, planners.__file__)
+def _digest(*files: str) -> str:
     return hashlib.sha256(b"".join(Path(file).read_bytes() for file in files)).hexdigest()[:12]
 
 

@@ -59,7 +59,15 @@ class Results:
     def finished(self) -> set[tuple[object, ...]]:
         """Keys of the runs that need not be done again; where plans are kept, of those whose plan is there."""
         keys = {run.key for run in self.runs}
-        return keys & _keys_of_plans(self.plans_path) if self._is_keeping_plans else keys
+        return keys & set(self.routes()) if self._is_keeping_plans else keys
+
+    def routes(self) -> dict[tuple[object, ...], list[list[int]]]:
+        """Return the routes that were kept, by the key of their run."""
+        if not self.plans_path.exists():
+            return {}
+        with self.plans_path.open(encoding="utf-8") as lines:
+            plans = [json.loads(line) for line in lines]
+        return {tuple(plan["key"]): plan["routes"] for plan in plans}
 
     def add(self, run: Run, routes: list[list[int]]) -> None:
         """Append a run."""
@@ -102,13 +110,6 @@ def read_results(path: Path) -> list[Run]:
     if faults:
         raise InvalidInput(faults)
     return list(runs.values())
-
-
-def _keys_of_plans(path: Path) -> set[tuple[object, ...]]:
-    if not path.exists():
-        return set()
-    with path.open(encoding="utf-8") as lines:
-        return {tuple(json.loads(line)["key"]) for line in lines}
 
 
 def _csv_line(values: Iterable[str]) -> str:

@@ -231,7 +231,7 @@ def markdown(comparison: Comparison, best_known_name: str) -> str:
     for build in sorted(builds, key=lambda build: min(run.finished_at for run in runs if run.build == build)):
         lines += _origin([run for run in runs if run.build == build])
     lines += ["", _best_known_sentence(comparison, best_known_name), ""]
-    has_build = len(builds) > 1
+    has_build = len({(run.planner, run.build) for run in runs}) > len({run.planner for run in runs})
     lines += _table(_OVERALL_COLUMNS, comparison.overall(), has_build)
     lines += ["", *_table(_SET_COLUMNS, comparison.sets(), has_build), ""]
     return "\n".join(lines)

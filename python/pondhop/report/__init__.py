@@ -1,0 +1,12 @@
+"""The paper's comparison, measured again: ``pondhop bench paper``.
+
+In reading order:
+
+- `printed`: what the paper prints, number by number.
+- `methods`: which planners take part and what a farm is expected to cost them.
+- `scope`: on which farms, and how many of them a planner gets that is slow.
+- `study`: the runs that this asks for, and their execution; whatever stops it, a later start goes on from there.
+- `tables`: the rows of the tables, and their CSV files.
+- `figures`: the pictures, light and dark.
+- `page`: the Markdown page from `report.md.jinja`, and the same as one self-contained HTML file.
+"""

@@ -1,0 +1,100 @@
+"""On which farms the report compares planners, and how many of them a planner gets that is slow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pondhop.report.methods import Method
+
+NUM_ROUTES = 5
+"""In the whole paper."""
+
+FARM_SEED = 1
+"""Of all sets of farms."""
+
+PLANNER_SEED = 1
+
+
+@dataclass(frozen=True)
+class Scope:
+    """How much is measured.
+
+    Attributes
+    ----------
+    name
+        What the report calls it.
+    num_ponds, num_farms
+        Of the sets of farms of Table 1.
+    farm_budget_s
+        A planner that is expected to take longer for a farm is too slow for farms of this size: it plans none.
+    set_budget_s
+        A planner that is expected to take longer for a set plans its first farms only, as many as fit, at least one.
+    anytime_num_ponds, anytime_num_farms, anytime_limits_s
+        Sets, first farms of each, and time limits for quality against time.
+    scaling_num_ponds, scaling_num_farms
+        Sets of larger farms for the scaling plot, which also shows those of Table 1.
+    num_repeats
+        Farms of the smallest set that are planned a second time, to see whether the plan is the same.
+    figure_num_ponds
+        Of the farm in the paper's figures 1b and 2, and of that in figure 3.
+    """
+
+    name: str
+    num_ponds: tuple[int, ...]
+    num_farms: int
+    farm_budget_s: float
+    set_budget_s: float
+    anytime_num_ponds: tuple[int, ...]
+    anytime_num_farms: int
+    anytime_limits_s: tuple[float, ...]
+    scaling_num_ponds: tuple[int, ...]
+    scaling_num_farms: int
+    num_repeats: int
+    figure_num_ponds: tuple[int, int] = (300, 100)
+
+    def num_farms_of(self, method: Method, num_ponds: int) -> int:
+        """Return how many farms of a set of Table 1 a method plans: all, the first few, or none."""
+        return self._fitting(method, num_ponds, self.num_farms)
+
+    def num_scaling_farms_of(self, method: Method, num_ponds: int) -> int:
+        """Return how many farms of a larger set a method plans."""
+        return self._fitting(method, num_ponds, self.scaling_num_farms)
+
+    def anytime_limits_of(self, method: Method) -> list[float]:
+        """Return the time limits that a planner gets: baselines start at a second, below it they have no plan."""
+        return [limit_s for limit_s in self.anytime_limits_s if method.kind == "ours" or limit_s >= 1.0]
+
+    def _fitting(self, method: Method, num_ponds: int, num_farms: int) -> int:
+        seconds = method.seconds(num_ponds)
+        if num_ponds > method.most_ponds or seconds > self.farm_budget_s:
+            return 0
+        return min(num_farms, max(1, int(self.set_budget_s / seconds))) if seconds else num_farms
+
+
+FULL = Scope(
+    name="full",
+    num_ponds=(50, 100, 200, 300, 500, 700),
+    num_farms=100,
+    farm_budget_s=60.0,
+    set_budget_s=400.0,
+    anytime_num_ponds=(50, 200, 700),
+    anytime_num_farms=2,
+    anytime_limits_s=(1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 60.0),
+    scaling_num_ponds=(1000, 2000, 5000, 10_000),
+    scaling_num_farms=3,
+    num_repeats=3,
+)
+
+QUICK = Scope(
+    name="quick",
+    num_ponds=FULL.num_ponds,
+    num_farms=10,
+    farm_budget_s=60.0,
+    set_budget_s=25.0,
+    anytime_num_ponds=FULL.anytime_num_ponds,
+    anytime_num_farms=1,
+    anytime_limits_s=FULL.anytime_limits_s[:-1],
+    scaling_num_ponds=FULL.scaling_num_ponds,
+    scaling_num_farms=1,
+    num_repeats=1,
+)
