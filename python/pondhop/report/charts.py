@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import cycle
 from typing import TYPE_CHECKING
 
 from pondhop.palette import ROUTE_COLOURS
 from pondhop.plot import LOOKS, Look, Theme
-from pondhop.report.methods import SEARCH
+from pondhop.report.methods import LONG_SEARCH, SEARCH
 from pondhop.report.tables import Margin, Point, Tables
 
 if TYPE_CHECKING:
@@ -94,9 +94,12 @@ def draw_quality_against_time(tables: Tables, theme: Theme) -> Axes:
                 label = method.name if is_line else method.label
                 _draw_line(ax, sorted(coordinates), label, styles[method.name], look)
         ax.set_xscale("log")
-        _time_axis(ax.xaxis, ax.get_xlim())
         ax.set_xlabel("time to plan one farm", color=look.faint_ink)
         _write_title(ax, f"{num_ponds} ponds", look)
+    limits = min(ax.get_xlim()[0] for ax in panels), max(ax.get_xlim()[1] for ax in panels)
+    for ax in panels:
+        ax.set_xlim(*limits)
+        _time_axis(ax.xaxis, limits)
     _gap_axis(panels[0], look)
     _write_legend(panels, look)
     return panels[0]
@@ -112,11 +115,12 @@ def draw_scaling(tables: Tables, theme: Theme) -> Axes:
         (right, "Longest route above the best known", lambda point: point.gap_percent),
     ]
     for ax, title, value in values:
-        for method in tables.study.shown_methods():
+        for method in [*tables.study.shown_methods(), LONG_SEARCH]:
             of_method = [point for point in tables.scaling if point.method == method.label]
             coordinates = [(float(point.num_ponds), y) for point in of_method if (y := value(point)) is not None]
+            style = replace(styles[method.name], dashes="--") if method == LONG_SEARCH else styles[method.name]
             if coordinates:
-                _draw_line(ax, coordinates, method.label, styles[method.name], look)
+                _draw_line(ax, coordinates, method.label, style, look)
         _number_axis(ax, "x", _some_sizes(list(tables.study.farms)), "ponds", look)
         _write_title(ax, title, look)
     left.set_yscale("log")
@@ -151,12 +155,12 @@ def _panels(number: int, look: Look, size_in: tuple[float, float], *, is_sharing
 
 
 def _draw_line(ax: Axes, coordinates: Sequence[tuple[float, float]], label: str, style: _Style, look: Look) -> None:
-    is_search = style is _STYLES["search"]
+    is_search = style == _STYLES["search"]
     ax.plot(
         *zip(*coordinates, strict=True),
         color=style.colour or look.ink,
         marker=style.marker,
-        linestyle=style.dashes,
+        linestyle=style.dashes if len(coordinates) > 1 else "",
         linewidth=2.4 if is_search else 1.5,
         markersize=6.5 if is_search or len(coordinates) > 1 else 9,
         markeredgecolor=look.background,
@@ -189,7 +193,7 @@ def _time_words(power: int) -> str:
 
 def _gap_axis(ax: Axes, look: Look) -> None:
     ax.set_yscale("symlog", linthresh=LINEAR_BELOW_PERCENT, linscale=0.5)
-    highest = ax.get_ylim()[1]
+    highest = 1.3 * ax.get_ylim()[1]
     ax.set_ylim(-0.02, highest)
     ticks = [tick for tick in (0, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000) if tick <= highest]
     _set_ticks(ax.yaxis, ticks, [f"{tick:g} %" for tick in ticks])

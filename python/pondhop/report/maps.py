@@ -52,7 +52,11 @@ def draw_routes(tables: Tables, theme: Theme) -> Axes:
     look = LOOKS[theme]
     num_ponds = tables.study.scope.figure_num_ponds[1]
     farm = _farm(tables, num_ponds)
-    shown = [method for method in tables.study.shown_methods() if tables.study.table(method, num_ponds)]
+    shown = [
+        (method, tables.measurements.routes(request))
+        for method in tables.study.shown_methods()
+        for request in tables.study.pictured(method)
+    ]
     num_rows = -(-len(shown) // _NUM_COLUMNS)
     extent = np.ptp(_extent(farm), axis=0)
     height_in = np.clip(_PANEL_IN * extent[1] / extent[0], 1.5, 4.5) + 0.75
@@ -60,8 +64,7 @@ def draw_routes(tables: Tables, theme: Theme) -> Axes:
     panels = figure.subplots(num_rows, _NUM_COLUMNS, squeeze=False).ravel()
     for ax in panels:
         ax.set_axis_off()
-    for ax, method in zip(panels, shown, strict=False):
-        routes = tables.measurements.routes(tables.study.table(method, num_ponds)[0])
+    for ax, (method, routes) in zip(panels, shown, strict=False):
         _draw_small_routes(ax, farm, routes, look)
         ax.set_title(method.label, loc="left", fontsize=11, fontweight="bold", color=look.ink, pad=18)
     first: Axes = panels[0]
@@ -95,7 +98,7 @@ def _draw_small_routes(ax: Axes, farm: ResearchFarm, routes: Sequence[Sequence[i
 
 
 def _farm(tables: Tables, num_ponds: int) -> ResearchFarm:
-    return tables.study.farms[num_ponds][0].farm
+    return tables.study.farms[num_ponds][tables.study.scope.figure_farm].farm
 
 
 def _extent(farm: ResearchFarm) -> NDArray[np.float64]:

@@ -80,13 +80,16 @@ def _limited(planner: str, kind: Kind, seconds: float, *, most_ponds: int = 10_0
 BASELINES_EXTRA = "pip install 'pondhop[baselines]'"
 
 SEARCH = _limited("search", "ours", 0.01)
-"""The planner that the baselines are compared with, and how long it may take."""
+"""The planner that the rivals are compared with, and how long it may take."""
+
+LONG_SEARCH = _limited("search", "ours", 1.0)
+"""What the same planner makes of more time."""
 
 METHODS: tuple[Method, ...] = (
     _limited("search", "ours", 0.001),
     SEARCH,
     _limited("search", "ours", 0.1),
-    _limited("search", "ours", 1.0),
+    LONG_SEARCH,
     Method("territory", "territory", "ours", seconds_at_100=0.012, growth=0.9),
     Method("hpp", "hpp", "ours", seconds_at_100=0.0002, growth=0.7, printed="HPP"),
     Method(
@@ -193,7 +196,8 @@ def installed(methods: Sequence[Method]) -> tuple[list[Method], list[LeftOut]]:
         except InvalidInput as error:
             if method.kind != "baseline":
                 raise
-            left_out += [LeftOut(method.label, fault.message, fault.action) for fault in error.faults]
+            reasons, actions = zip(*((fault.message, fault.action) for fault in error.faults), strict=True)
+            left_out.append(LeftOut(method.label, "; ".join(reasons), "; ".join(dict.fromkeys(actions))))
         else:
             present.append(method)
     return present, left_out

@@ -35,8 +35,8 @@ class Scope:
         Sets of larger farms for the scaling plot, which also shows those of Table 1.
     num_repeats
         Farms of the smallest set that are planned a second time, to see whether the plan is the same.
-    figure_num_ponds
-        Of the farm in the paper's figures 1b and 2, and of that in figure 3.
+    figure_farm, figure_num_ponds
+        Index of the farm that figures show, and number of ponds: in the paper's figures 1b and 2, and in figure 3.
     """
 
     name: str
@@ -50,6 +50,7 @@ class Scope:
     scaling_num_ponds: tuple[int, ...]
     scaling_num_farms: int
     num_repeats: int
+    figure_farm: int = 2
     figure_num_ponds: tuple[int, int] = (300, 100)
 
     def num_farms_of(self, method: Method, num_ponds: int) -> int:

@@ -32,7 +32,8 @@ class SearchWithin:
 
     def __call__(self, problem: Problem, seed: int, time_limit_s: float | None) -> list[list[int]]:
         """Plan; where no plan is found that is as balanced, the longest route is as short as it gets."""
-        limited = Problem(problem.depot, problem.ponds, problem.num_drones, max_length_m=self.max_route_length)
+        # On a research farm, where drones fly at speed 1 and never stop, a second is a length unit.
+        limited = Problem(problem.depot, problem.ponds, problem.num_drones, max_duration_s=self.max_route_length)
         routes, *_ = _core.search(limited, seed=seed, time_limit_s=time_limit_s, objective="total")
         return routes
 
@@ -88,6 +89,13 @@ class Study:
         first = self.table(method, min(self.scope.num_ponds))[: self.scope.num_repeats]
         return [(request, _again(request)) for request in first]
 
+    def pictured(self, method: Method) -> list[Request]:
+        """Return the run of a method on the farm that figure 3 shows, nothing if that would take too long."""
+        num_ponds = self.scope.figure_num_ponds[1]
+        if not self.scope.num_farms_of(method, num_ponds):
+            return []
+        return [_request(self.farms[num_ponds][self.scope.figure_farm], method)]
+
     def anytime_methods(self) -> list[Method]:
         """Return one method for each planner that gets better with more time."""
         found = {method.name: method for method in self.methods if method.name in ANYTIME}
@@ -114,6 +122,7 @@ class Study:
                     for method in self.anytime_methods()
                     for limit_s in scope.anytime_limits_of(method)
                 ]
+        groups += [self.pictured(method) for method in self.shown_methods()]
         groups += [[again for _, again in self.repeats(method)] for method in self.methods]
         return list({request.key: request for request in chain.from_iterable(groups)}.values())
 

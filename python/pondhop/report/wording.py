@@ -8,7 +8,7 @@ from math import sqrt
 from statistics import fmean, stdev
 from typing import Literal
 
-from pondhop.report.methods import SEARCH, Method
+from pondhop.report.methods import LONG_SEARCH, SEARCH, Method
 from pondhop.report.printed import COLUMNS, TABLE_1, TABLE_2, Column, Printed
 from pondhop.report.scope import NUM_ROUTES
 from pondhop.report.tables import Character, Margin, Score, Tables
@@ -87,14 +87,14 @@ class Wording:
             for (_, printed, _), score in zip(columns, scores, strict=True):
                 if printed is not None:
                     value = printed.get(size)
-                    cells.append(_number(getattr(value, quantity), quantity) if value else _NOTHING)
+                    cells.append(_as_printed(getattr(value, quantity), quantity) if value else _NOTHING)
                 else:
                     cells.append(self._cell(score, quantity, best))
             rows.append(cells)
         return _markdown_table(headings, rows)
 
     def _columns(self) -> list[tuple[str, dict[int, Printed] | None, Method | None]]:
-        """The paper's columns, each followed by our run of the same method, then all other methods."""
+        """Return the paper's columns, each followed by our run of the same method, and then one a planner."""
         of_column = {method.printed: method for method in self._study.methods if method.printed}
         columns: list[tuple[str, dict[int, Printed] | None, Method | None]] = []
         for column in COLUMNS:
@@ -102,7 +102,8 @@ class Wording:
             method = of_column.get(column)
             if method:
                 columns.append((method.label, None, method))
-        others = [method for method in self._study.methods if method.printed is None]
+        shown = [*self._study.shown_methods(), LONG_SEARCH]
+        others = [method for method in reversed(shown) if method.printed is None]
         return columns + [(method.label, None, method) for method in others]
 
     def _cell(self, score: Score | None, quantity: Quantity, best: float | None) -> str:
@@ -323,14 +324,18 @@ def _number(value: float, quantity: Quantity) -> str:
     return f"{value:.2f}" if quantity != "seconds" else _three_digits(value)
 
 
+def _as_printed(value: float, quantity: Quantity) -> str:
+    return f"{value:.2f}" if quantity != "seconds" else f"{value:g}"
+
+
 def _three_digits(value: float) -> str:
-    return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
+    return f"{value:,.0f}" if value >= 100 else f"{value:#.3g}"
 
 
 def _seconds(value: float) -> str:
     if value < 1e-3:
         return f"{1e3 * value:.2f} ms"
-    return f"{1e3 * value:.3g} ms" if value < 1 else f"{_three_digits(value)} s"
+    return f"{_three_digits(1e3 * value)} ms" if value < 1 else f"{_three_digits(value)} s"
 
 
 def _percent(value: float | None) -> str:
