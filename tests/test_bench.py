@@ -244,6 +244,28 @@ def test_another_build_is_run_again_and_shown_apart(tmp_path: Path) -> None:
     assert page.count("build 0123456789ab") == 1
 
 
+def test_a_planner_of_ones_own_from_the_command_line(tmp_path: Path) -> None:
+    module = tmp_path / "my_planners.py"
+    module.write_text("def alone(problem, seed, time_limit_s):\n    return [list(range(problem.num_ponds))]\n")
+    command = [PONDHOP, "bench", "run", "--planners", "hpp,my_planners:alone", "--generate", "20", "--farms", "2"]
+    command += ["--routes", "3", "--jobs", "2", "-o", "out", "--json"]
+
+    def answer() -> dict[str, Any]:
+        ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+        return dict(json.loads(ran.stdout))
+
+    used = [(row["planner"], row["num_routes_used"]) for row in answer()["sets"]]
+    assert used == [("hpp", 3.0), ("my_planners:alone", 1.0)]
+    assert "| build |" not in (tmp_path / "out" / "results.md").read_text()
+    # A planner that has changed is run again and shown beside its old self; the others are not run again.
+    module.write_text(module.read_text().replace("[list(range(problem.num_ponds))]", "[[0], [1]]"))
+    again = answer()
+    assert again["num_new_runs"] == 2
+    missed = sorted((row["planner"], row["num_missed"]) for row in again["sets"])
+    assert missed == [("hpp", 0), ("my_planners:alone", 0), ("my_planners:alone", 36)]
+    assert "| build |" in (tmp_path / "out" / "results.md").read_text()
+
+
 def test_summaries_by_hand() -> None:
     runs = [
         RUN,
@@ -388,7 +410,7 @@ def test_all_faults_of_a_command_are_named_at_once(tmp_path: Path) -> None:
     farms = tmp_path / "farms.json"
     farms.write_text('[{"depot": [0, "x"], "ponds": []}]')
     command = ("run", farms, "--generate", "0,x,50,50", "--routes", "0", "--time-limits", "0,nan,1")
-    more = ("--seeds", "-1", "--planners", "hpq,hpp:threads=0,hpp:thread=2,hpp:threads=two,hpp,hpp")
+    more = ("--seeds", "-1", "--planners", "hpq,hpp:threads=0,hpp:thread=2,hpp:threads=two,hpp,hpp,nowhere:mine")
     folder = tmp_path / "out"
     files = ("--best-known", farms, "--update-best", tmp_path / "best.csv", "-o", folder)
     assert faults_of(*command, *more, *files) == [
@@ -404,6 +426,7 @@ def test_all_faults_of_a_command_are_named_at_once(tmp_path: Path) -> None:
         "planner hpp:threads=0: threads",
         "planner hpp:thread=2",
         "planner hpp:threads=two",
+        "planner nowhere:mine",
         "planner hpp",
     ]
     assert not folder.exists()

@@ -115,7 +115,7 @@ def draw_scaling(tables: Tables, theme: Theme) -> Axes:
         (right, "Longest route above the best known", lambda point: point.gap_percent),
     ]
     for ax, title, value in values:
-        for method in [*tables.study.shown_methods(), LONG_SEARCH]:
+        for method in tables.study.compared_methods():
             of_method = [point for point in tables.scaling if point.method == method.label]
             coordinates = [(float(point.num_ponds), y) for point in of_method if (y := value(point)) is not None]
             style = replace(styles[method.name], dashes="--") if method == LONG_SEARCH else styles[method.name]

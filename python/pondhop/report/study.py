@@ -14,7 +14,7 @@ from pondhop.bench.execute import execute
 from pondhop.bench.farm_sets import BenchFarm, Task, generate_farm_set
 from pondhop.bench.measure import Entrant, Request, Run, TimeLimit
 from pondhop.bench.results import Results
-from pondhop.report.methods import ANYTIME, SEARCH, LeftOut, Method
+from pondhop.report.methods import ANYTIME, LONG_SEARCH, SEARCH, LeftOut, Method
 from pondhop.report.scope import FARM_SEED, NUM_ROUTES, PLANNER_SEED, Scope
 
 
@@ -108,6 +108,10 @@ class Study:
             if method.name not in found or method == SEARCH:
                 found[method.name] = method
         return list(found.values())
+
+    def compared_methods(self) -> list[Method]:
+        """Return what Table 1 and the scaling plot compare: the methods that figures show, and `LONG_SEARCH`."""
+        return [*self.shown_methods(), *(method for method in self.methods if method == LONG_SEARCH)]
 
     def requests(self) -> list[Request]:
         """Return all runs but those of `within`, each once, smaller farms first."""

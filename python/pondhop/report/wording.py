@@ -8,7 +8,7 @@ from math import sqrt
 from statistics import fmean, stdev
 from typing import Literal
 
-from pondhop.report.methods import LONG_SEARCH, SEARCH, Method
+from pondhop.report.methods import SEARCH, Method
 from pondhop.report.printed import COLUMNS, TABLE_1, TABLE_2, Column, Printed
 from pondhop.report.scope import NUM_ROUTES
 from pondhop.report.tables import Character, Margin, Score, Tables
@@ -50,6 +50,11 @@ class Wording:
         """First and last day of the runs."""
         days = sorted({run.finished_at[:10] for run in self._tables.measurements.all_runs})
         return days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"
+
+    def core_share(self) -> str:
+        """Return how much of a core planners had while they planned."""
+        runs = self._tables.measurements.all_runs
+        return f"{100 * sum(run.cpu_s for run in runs) / sum(run.elapsed_s for run in runs):.0f} %"
 
     @property
     def num_runs(self) -> int:
@@ -102,8 +107,8 @@ class Wording:
             method = of_column.get(column)
             if method:
                 columns.append((method.label, None, method))
-        shown = [*self._study.shown_methods(), LONG_SEARCH]
-        others = [method for method in reversed(shown) if method.printed is None]
+        others = [method for method in self._study.compared_methods() if method.printed is None]
+        others.sort(key=lambda method: (method.kind == "ours", method.name == SEARCH.name))
         return columns + [(method.label, None, method) for method in others]
 
     def _cell(self, score: Score | None, quantity: Quantity, best: float | None) -> str:
@@ -137,7 +142,7 @@ class Wording:
         headings = [
             "planner",
             f"above best, {_range(small)} ponds",
-            f"{_range(large)} ponds",
+            f"above best, {_range(large)} ponds",
             "optimality, paper",
             "time of a farm",
             "grows as",
@@ -165,7 +170,7 @@ class Wording:
             "by its limit" if row.growth is None else f"n^{row.growth:.1f}",
             f"{row.most_ponds:,}",
             scalability,
-            f"{row.overlap:.1%}",
+            _percent(100 * row.overlap),
             f"{row.num_crossings:.1f}",
             f"{row.num_within_rules} of {row.num_plans}",
             f"{row.num_same_again} of {row.num_again}",
@@ -201,7 +206,7 @@ class Wording:
                 f"{score.num_routes_used:.2f}",
                 f"{score.num_too_many_routes} of {score.num_farms}" if score.num_too_many_routes else "0",
                 str(score.num_missed),
-                f"{score.overlap:.1%}",
+                _percent(100 * score.overlap),
                 f"{score.num_crossings:.1f}",
             ]
             for score in self._tables.scores
