@@ -57,11 +57,12 @@ def draw_routes(tables: Tables, theme: Theme) -> Axes:
         for method in tables.study.shown_methods()
         for request in tables.study.pictured(method)
     ]
-    num_rows = -(-len(shown) // _NUM_COLUMNS)
+    num_columns = min(_NUM_COLUMNS, len(shown))
+    num_rows = -(-len(shown) // num_columns)
     extent = np.ptp(_extent(farm), axis=0)
     height_in = np.clip(_PANEL_IN * extent[1] / extent[0], 1.5, 4.5) + 0.75
-    figure = Figure(figsize=(_NUM_COLUMNS * _PANEL_IN, num_rows * height_in), layout="constrained")
-    panels = figure.subplots(num_rows, _NUM_COLUMNS, squeeze=False).ravel()
+    figure = Figure(figsize=(num_columns * _PANEL_IN, num_rows * height_in), layout="constrained")
+    panels = figure.subplots(num_rows, num_columns, squeeze=False).ravel()
     for ax in panels:
         ax.set_axis_off()
     for ax, (method, routes) in zip(panels, shown, strict=False):
