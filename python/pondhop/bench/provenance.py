@@ -20,21 +20,23 @@ _REPOSITORY = Path(__file__).resolve().parents[3]
 
 
 def build_digest(planner: str | PlannerFunction) -> str:
-    """Return 12 hexadecimal digits that change with the code that plans.
+    """Return 12 hexadecimal digits that change with the code that plans: the core, planners, baselines and weights.
 
-    That is the native core and the planners of this package; for a planner of your own also the file that it lies in.
+    For a planner of your own they also change with the file that it lies in.
     """
-    files = [_core.__file__, planners.__file__]
-    if callable(planner):
-        code = planner if inspect.isroutine(planner) else type(planner)
-        source = inspect.getsourcefile(code)
-        files += [source] if source is not None and Path(source).exists() else []
-    return _digest(*files)
+    if not callable(planner):
+        return _digest(None)
+    source = inspect.getsourcefile(planner if inspect.isroutine(planner) else type(planner))
+    return _digest(source if source is not None and Path(source).exists() else None)
 
 
 @cache
-def _digest(*files: str) -> str:
-    return hashlib.sha256(b"".join(Path(file).read_bytes() for file in files)).hexdigest()[:12]
+def _digest(own_file: str | None) -> str:
+    baselines = (Path(planners.__file__).parent / "baselines").rglob("*")
+    files = [Path(_core.__file__), Path(planners.__file__)]
+    files += sorted(file for file in baselines if file.suffix in (".py", ".npz"))
+    files += [Path(own_file)] if own_file is not None else []
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:12]
 
 
 @cache
