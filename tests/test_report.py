@@ -4,6 +4,7 @@ import csv
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from statistics import fmean
@@ -21,7 +22,7 @@ from pondhop.bench.measure import Run, TimeLimit
 from pondhop.bench.results import read_results
 from pondhop.cli import app
 from pondhop.report import methods, page, scope
-from pondhop.report.methods import METHODS, SEARCH, Method, installed, own_methods
+from pondhop.report.methods import LONG_SEARCH, METHODS, SEARCH, Method, installed, own_methods
 from pondhop.report.printed import TABLE_1
 from pondhop.report.scope import FULL, QUICK, Scope
 from pondhop.report.study import Measurements, SearchWithin, Study, execute_study, seconds_missing
@@ -254,10 +255,12 @@ def test_table_2_says_what_was_measured(report: Report) -> None:
     slope = _least_squares([(math.log(runs[0].num_ponds), math.log(fmean(r.elapsed_s for r in runs))) for runs in hpp])
     assert float(rows["hpp"]["growth"]) == pytest.approx(slope)
     text = (report.folder / "report.md").read_text()
-    names, _, *body = table_after(text, "## Table 2")
-    cells = {row[0]: dict(zip(names, row, strict=True)) for row in body}
-    assert cells["hpp"]["optimality, paper"] == "Medium"
-    assert cells["hpp"]["scalability, paper"] == "High"
+    for part, adjective in (("Optimality", "Medium"), ("Scalability", "High"), ("Practicality", "High")):
+        names, _, *body = table_after(text, f"### {part}")
+        cells = {row[0]: dict(zip(names, row, strict=True)) for row in body}
+        assert list(cells) == list(rows)
+        assert cells["hpp"]["paper"] == adjective
+        assert cells["six"]["paper"] == ""
     assert cells["six"]["plans within the rules"] == "0 of 6"
 
 
@@ -306,8 +309,6 @@ def test_what_is_sampled_or_left_out_is_said(report: Report) -> None:
 
 def _with_farm_budget(report: Report, farm_budget_s: float) -> Measurements:
     """The same report, where the slow method is too slow for every farm."""
-    from dataclasses import replace
-
     study = report.measurements.study
     narrow = replace(study, scope=replace(study.scope, farm_budget_s=farm_budget_s))
     return execute_study(narrow, report.folder, advance=lambda _seconds: None)[0]
@@ -330,11 +331,38 @@ def test_a_finished_study_runs_nothing_and_a_cut_one_only_what_is_missing(report
 
 def test_the_expected_seconds_are_those_of_what_is_missing(report: Report, tmp_path: Path) -> None:
     study = report.measurements.study
-    num_within = 3 * 2 * 2 + 3  # hpp and six plan three farms of both sets, the slow one two and one
-    assert seconds_missing(study, report.folder) == pytest.approx(0.01 * num_within)
+    assert seconds_missing(study, report.folder) == 0.0
+    expected_s = seconds_missing(study, tmp_path)
     told: list[float] = []
     execute_study(study, tmp_path, num_jobs=2, advance=told.append)
-    assert sum(told) == pytest.approx(seconds_missing(study, tmp_path / "nothing"))
+    runs = read_results(tmp_path / "results.csv")
+    assert sum(told) == pytest.approx(
+        expected_s + sum(run.time_limit_s for run in runs if run.planner.startswith("search within"))
+    )
+    assert len(told) == len(runs)
+
+
+def test_the_time_that_search_needs(report: Report) -> None:
+    rows = {(row["rival"], row["num_ponds"]): row for row in csv_rows(report, "margins.csv")}
+    assert rows["slow, mine", "50"]["seconds_for_max"] == "0.01"
+    assert rows["slow, mine", "50"]["seconds_for_total"] == "0.01"
+    text = (report.folder / "report.md").read_text()
+    _, _, *body = table_after(text, "What `search` needs")
+    assert ["slow, mine", "10 ms, 10 ms", "10 ms, 10 ms"] in body
+
+
+def test_search_gets_more_time_until_it_is_no_worse(tmp_path: Path) -> None:
+    """Against a rival that nothing beats: `search` itself, with a hundred times the time."""
+    farms = replace(TINY, num_ponds=(200,), num_farms=2, anytime_num_ponds=(), scaling_num_ponds=(), num_repeats=0)
+    study = Study(replace(farms, figure_num_ponds=(200, 200)), [SEARCH, replace(LONG_SEARCH, kind="baseline")])
+    measurements, _ = execute_study(study, tmp_path, num_jobs=2, advance=lambda _seconds: None)
+    runs = [run for run in measurements.all_runs if run.planner == "search within search, 1 s"]
+    needed = measurements.seconds_for_total(study.rivals[0], 200)
+    limits = {run.time_limit_s for run in runs}
+    assert limits == {limit_s for limit_s in (0.01, 0.1, 1.0) if limit_s <= (needed or 1.0)}
+    (margin,) = Tables(measurements).margins
+    assert margin.seconds_for_total == needed
+    assert margin.seconds_for_max in (0.01, 1.0)
 
 
 class _Resources(HTMLParser):

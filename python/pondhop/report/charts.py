@@ -64,9 +64,9 @@ def draw_margins(tables: Tables, theme: Theme) -> Axes:
         ax.set_yscale("log")
         _number_axis(ax, "x", sorted(tables.study.scope.num_ponds), "ponds", look)
         _write_title(ax, title, look)
-    highest = max(left.get_ylim()[1], 1.12)
-    ticks = [tick for tick in (1, 1.1, 1.25, 1.5, 2, 3, 4, 6, 10) if tick <= highest]
-    left.set_ylim(0.96, highest)
+    lowest, highest = min(left.get_ylim()[0], 0.96), max(left.get_ylim()[1], 1.12)
+    ticks = [tick for tick in (0.6, 0.8, 1, 1.25, 1.5, 2, 3, 4, 6, 10) if lowest <= tick <= highest]
+    left.set_ylim(lowest, highest)
     _set_ticks(left.yaxis, ticks, [f"{tick:g} \u00d7" for tick in ticks])
     left.set_ylabel(f"times that of {SEARCH.label}", color=look.faint_ink)
     _write_legend([left, right], look)

@@ -86,7 +86,7 @@ def _draw_small_routes(ax: Axes, farm: ResearchFarm, routes: Sequence[Sequence[i
     draw_depot(ax, problem, look)
     words = f"longest {plan.max_route_length:.3f} · total {plan.total_length:.2f}"
     if len(plan.routes) != NUM_ROUTES:
-        words += f" · {len(plan.routes)} routes"
+        words += f" · {len(plan.routes)} route{'s' if len(plan.routes) != 1 else ''}"
     ax.annotate(
         words,
         xy=(0, 1),

@@ -85,6 +85,9 @@ SEARCH = _limited("search", "ours", 0.01)
 LONG_SEARCH = _limited("search", "ours", 1.0)
 """What the same planner makes of more time."""
 
+WITHIN_LIMITS_S = (0.01, 0.1, 1.0)
+"""What `search` is given in turn, until its total is no longer than a rival's at an equal longest route."""
+
 METHODS: tuple[Method, ...] = (
     _limited("search", "ours", 0.001),
     SEARCH,

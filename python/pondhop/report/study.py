@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
+from statistics import fmean
 
 from pondhop import _core
 from pondhop._core import Problem
@@ -14,7 +15,8 @@ from pondhop.bench.execute import execute
 from pondhop.bench.farm_sets import BenchFarm, Task, generate_farm_set
 from pondhop.bench.measure import Entrant, Request, Run, TimeLimit
 from pondhop.bench.results import Results
-from pondhop.report.methods import ANYTIME, LONG_SEARCH, SEARCH, LeftOut, Method
+from pondhop.bench.summary import SAME_LENGTH
+from pondhop.report.methods import ANYTIME, LONG_SEARCH, SEARCH, WITHIN_LIMITS_S, LeftOut, Method
 from pondhop.report.scope import FARM_SEED, NUM_ROUTES, PLANNER_SEED, Scope
 
 
@@ -68,6 +70,11 @@ class Study:
     def rivals(self) -> list[Method]:
         """What `search` is compared with: the paper's methods, today's solvers and planners of your own."""
         return [method for method in self.methods if method.kind != "ours" or method.printed is not None]
+
+    @cached_property
+    def pairs(self) -> list[tuple[Method, int]]:
+        """Each rival with each set of Table 1 of which it planned farms."""
+        return [(rival, size) for rival in self.rivals for size in self.scope.num_ponds if self.table(rival, size)]
 
     def table(self, method: Method, num_ponds: int) -> list[Request]:
         """Return the runs of a method on a set of Table 1."""
@@ -168,25 +175,52 @@ class Measurements:
     @cached_property
     def all_runs(self) -> list[Run]:
         """Every run of the study."""
-        within = (self.within(method, size) for method in self.study.rivals for size in self.study.scope.num_ponds)
-        return self.runs(chain(self.study.requests(), *within))
+        within = (self.within(rival, size, limit_s) for rival, size in self.study.pairs for limit_s in WITHIN_LIMITS_S)
+        finished = [request for request in chain(*within) if request.key in self._runs]
+        return self.runs([*self.study.requests(), *finished])
 
-    def within(self, rival: Method, num_ponds: int) -> list[Request]:
+    def within(self, rival: Method, num_ponds: int, limit_s: float) -> list[Request]:
         """Return for each run of a rival one of `search` that may fly routes as long as the rival's longest."""
-        entrants = [
-            Entrant(f"search within {rival.label}", SearchWithin(run.max_route_length))
-            for run in self.runs(self.study.table(rival, num_ponds))
-        ]
-        farms = self.study.farms[num_ponds]
+        rival_runs = self.runs(self.study.table(rival, num_ponds))
         return [
-            Request(Task(farm, NUM_ROUTES), entrant, SEARCH.time_limit, PLANNER_SEED)
-            for farm, entrant in zip(farms, entrants, strict=False)
+            Request(
+                Task(farm, NUM_ROUTES),
+                Entrant(f"search within {rival.label}", SearchWithin(run.max_route_length)),
+                TimeLimit(limit_s),
+                PLANNER_SEED,
+            )
+            for farm, run in zip(self.study.farms[num_ponds], rival_runs, strict=False)
         ]
 
-    def all_within(self) -> list[Request]:
-        """Return the runs of `within` for every rival and set."""
-        sizes = self.study.scope.num_ponds
-        return [request for rival in self.study.rivals for size in sizes for request in self.within(rival, size)]
+    def seconds_for_total(self, rival: Method, num_ponds: int) -> float | None:
+        """Return the least of `WITHIN_LIMITS_S` in which `search` is no worse than a rival, `None` if none is enough.
+
+        Averages count: the total is no longer than the rival's, and neither is the longest route.
+        """
+        theirs = self.runs(self.study.table(rival, num_ponds))
+        for limit_s in WITHIN_LIMITS_S:
+            requests = self.within(rival, num_ponds, limit_s)
+            if not all(request.key in self._runs for request in requests):
+                return None
+            ours = self.runs(requests)
+            if is_no_longer(ours, theirs, "total_length") and is_no_longer(ours, theirs, "max_route_length"):
+                return limit_s
+        return None
+
+    def next_within(self, limit_s: float) -> list[Request]:
+        """Return the runs of `within` with this limit where no lower limit was enough."""
+        return [
+            request
+            for rival, size in self.study.pairs
+            if self.seconds_for_total(rival, size) is None
+            for request in self.within(rival, size, limit_s)
+        ]
+
+
+def is_no_longer(ours: Sequence[Run], theirs: Sequence[Run], quantity: str) -> bool:
+    """Return whether the average of a length is that of the others, up to rounding, or less."""
+    mine, other = (fmean(getattr(run, quantity) for run in runs) for runs in (ours, theirs))
+    return mine <= other * (1 + SAME_LENGTH)
 
 
 def execute_study(
@@ -230,18 +264,19 @@ def execute_study(
         num_new += len(missing)
 
     run_missing(study.requests())
-    # What the rivals' longest routes are is known only now.
-    run_missing(Measurements(study, results).all_within())
+    # What the rivals' longest routes are is known only now, and what they take to match only step by step.
+    for limit_s in WITHIN_LIMITS_S:
+        run_missing(Measurements(study, results).next_within(limit_s))
     return Measurements(study, results), num_new
 
 
 def seconds_missing(study: Study, folder: Path) -> float:
-    """Return the seconds that the missing runs of a study are expected to take on one core."""
+    """Return the seconds that the missing runs of a study are expected to take on one core.
+
+    The comparisons within a rival's longest route are not counted: which they are is known when the others are done.
+    """
     finished = Results(folder, is_keeping_plans=True).finished
-    sets = [(rival, size) for rival in study.rivals for size in study.scope.num_ponds]
-    return sum(expected_seconds(study, request) for request in study.requests() if request.key not in finished) + sum(
-        (SEARCH.time_limit.seconds or 0.0) * len(study.table(rival, size)) for rival, size in sets
-    )
+    return sum(expected_seconds(study, request) for request in study.requests() if request.key not in finished)
 
 
 def expected_seconds(study: Study, request: Request) -> float:

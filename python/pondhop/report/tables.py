@@ -17,9 +17,9 @@ from statistics import fmean, linear_regression
 from pondhop.bench.best_known import BestKnown
 from pondhop.bench.measure import Request, Run
 from pondhop.bench.summary import SAME_LENGTH, Comparison
-from pondhop.report.methods import SEARCH, Method
+from pondhop.report.methods import SEARCH, WITHIN_LIMITS_S, Method
 from pondhop.report.printed import TABLE_1
-from pondhop.report.study import Measurements
+from pondhop.report.study import Measurements, is_no_longer
 
 FARMS_OF_A_RUN_TIME = 100
 """The paper's run times are for 100 farms."""
@@ -90,6 +90,11 @@ class Margin:
         Farms where that plan has a shorter total and no longer longest route than the rival's.
     num_too_many_routes
         Farms where the rival used more routes than allowed; they are compared all the same.
+    seconds_for_max
+        Least time limit of Table 1 with which the longest route of `search` is no longer than the rival's on average;
+        `None` if none is enough.
+    seconds_for_total
+        The same for the total at the rival's longest route: see `Measurements.seconds_for_total`.
     """
 
     rival: str
@@ -104,6 +109,8 @@ class Margin:
     rival_total_length: float
     num_dominated: int
     num_too_many_routes: int
+    seconds_for_max: float | None
+    seconds_for_total: float | None
 
     @property
     def max_saved_percent(self) -> float:
@@ -211,12 +218,7 @@ class Tables:
     @cached_property
     def margins(self) -> list[Margin]:
         """`search` against each rival on every set that the rival planned."""
-        return [
-            self._margin(rival, num_ponds)
-            for rival in self.study.rivals
-            for num_ponds in self.study.scope.num_ponds
-            if self.study.table(rival, num_ponds)
-        ]
+        return [self._margin(rival, num_ponds) for rival, num_ponds in self.study.pairs]
 
     @cached_property
     def characters(self) -> list[Character]:
@@ -289,7 +291,7 @@ class Tables:
     def _margin(self, rival: Method, num_ponds: int) -> Margin:
         theirs = self._runs(self.study.table(rival, num_ponds))
         ours = self._runs(self.study.table(SEARCH, num_ponds)[: len(theirs)])
-        within = self._runs(self.measurements.within(rival, num_ponds))
+        within = self._runs(self.measurements.within(rival, num_ponds, WITHIN_LIMITS_S[0]))
         return Margin(
             rival=rival.label,
             num_ponds=num_ponds,
@@ -306,7 +308,19 @@ class Tables:
                 for mine, other in zip(within, theirs, strict=True)
             ),
             num_too_many_routes=sum(map(_has_too_many_routes, theirs)),
+            seconds_for_max=self._seconds_for_max(theirs, num_ponds),
+            seconds_for_total=self.measurements.seconds_for_total(rival, num_ponds),
         )
+
+    def _seconds_for_max(self, theirs: Sequence[Run], num_ponds: int) -> float | None:
+        """Return the least time limit of `search` with which it is no worse on the same farms."""
+        enough = []
+        for method in self.study.methods:
+            ours = self._runs(self.study.table(method, num_ponds)[: len(theirs)])
+            is_complete = method.name == SEARCH.name and len(ours) == len(theirs)
+            if is_complete and is_no_longer(ours, theirs, "max_route_length"):
+                enough.append(method.time_limit.seconds or 0.0)
+        return min(enough, default=None)
 
     def _character(self, method: Method) -> Character:
         study = self.study

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 from math import sqrt
 from statistics import fmean, stdev
 from typing import Literal
 
-from pondhop.report.methods import SEARCH, Method
+from pondhop.report.methods import SEARCH, WITHIN_LIMITS_S, Method
 from pondhop.report.printed import COLUMNS, TABLE_1, TABLE_2, Column, Printed
 from pondhop.report.scope import NUM_ROUTES
 from pondhop.report.tables import Character, Margin, Score, Tables
@@ -129,54 +129,76 @@ class Wording:
             return f"{_signed(-margin.total_saved_percent)} ({margin.num_dominated}/{margin.num_farms})"
 
         by_set = {(margin.rival, margin.num_ponds): cell(margin) for margin in self._tables.margins}
+        return self._by_rival(by_set, f"{SEARCH.label}, against")
+
+    def limits(self) -> str:
+        """Return the time limits that `search` is given in turn."""
+        searches = [method for method in self._study.methods if method.name == SEARCH.name]
+        return ", ".join(_limit(method.time_limit.seconds) for method in searches if method.time_limit.seconds)
+
+    def times_table(self) -> str:
+        """Return the time that `search` needs to be no worse than each rival, for the longest route and the total."""
+
+        def words(seconds: float | None) -> str:
+            return f"more than {_limit(WITHIN_LIMITS_S[-1])}" if seconds is None else _limit(seconds)
+
+        by_set = {
+            (margin.rival, margin.num_ponds): f"{words(margin.seconds_for_max)}, {words(margin.seconds_for_total)}"
+            for margin in self._tables.margins
+        }
+        return self._by_rival(by_set, "longest, total: against")
+
+    def _by_rival(self, by_set: dict[tuple[str, int], str], heading: str) -> str:
+        """A row a rival, a column a set."""
         rows = [
             [rival.label, *(by_set.get((rival.label, size), _NOTHING) for size in self._scope.num_ponds)]
             for rival in self._study.rivals
         ]
-        return _markdown_table([f"{SEARCH.label}, against", *(f"{size} ponds" for size in self._scope.num_ponds)], rows)
+        return _markdown_table([heading, *(f"{size} ponds" for size in self._scope.num_ponds)], rows)
 
-    def table_2(self) -> str:
-        """Return Table 2: measurements where the paper has adjectives, which stand beside them."""
+    def optimality(self) -> str:
+        """Return the first part of Table 2."""
         half = -(-len(self._scope.num_ponds) // 2)
         small, large = sorted(self._scope.num_ponds)[:half], sorted(self._scope.num_ponds)[half:]
-        headings = [
-            "planner",
-            f"above best, {_range(small)} ponds",
-            f"above best, {_range(large)} ponds",
-            "optimality, paper",
-            "time of a farm",
-            "grows as",
-            "most ponds",
-            "scalability, paper",
-            "overlap",
-            "crossings",
-            "plans within the rules",
-            "same plan again",
-            "needs",
-            "practicality, paper",
-        ]
-        adjectives = {method.label: TABLE_2[method.printed] for method in self._study.methods if method.printed}
-        rows = [self._character(row, adjectives.get(row.method)) for row in self._tables.characters]
-        return _markdown_table(headings, rows)
+        headings = [f"above best, {_range(small)} ponds", f"above best, {_range(large)} ponds"]
+        return self._table_2(headings, 0, lambda row: map(_percent, (row.gap_small_percent, row.gap_large_percent)))
 
-    def _character(self, row: Character, adjectives: tuple[str, str, str] | None) -> list[str]:
-        optimality, scalability, practicality = adjectives or ("", "", "")
-        return [
-            row.method,
-            _percent(row.gap_small_percent),
-            _percent(row.gap_large_percent),
-            optimality,
-            f"{_seconds(row.seconds_at_largest)} at {row.largest_set}",
-            "by its limit" if row.growth is None else f"n^{row.growth:.1f}",
-            f"{row.most_ponds:,}",
-            scalability,
-            _percent(100 * row.overlap),
-            f"{row.num_crossings:.1f}",
-            f"{row.num_within_rules} of {row.num_plans}",
-            f"{row.num_same_again} of {row.num_again}",
-            f"`{row.needs}`" if row.needs else "nothing",
-            practicality,
+    def scalability(self) -> str:
+        """Return the second part of Table 2."""
+        return self._table_2(
+            ["time of a farm", "of ponds", "grows as", "most ponds"],
+            1,
+            lambda row: [
+                _seconds(row.seconds_at_largest),
+                str(row.largest_set),
+                "by its limit" if row.growth is None else f"n^{row.growth:.1f}",
+                f"{row.most_ponds:,}",
+            ],
+        )
+
+    def practicality(self) -> str:
+        """Return the third part of Table 2."""
+        return self._table_2(
+            ["overlap", "crossings", "plans within the rules", "same plan again", "needs"],
+            2,
+            lambda row: [
+                _percent(100 * row.overlap),
+                f"{row.num_crossings:.1f}",
+                f"{row.num_within_rules} of {row.num_plans}",
+                f"{row.num_same_again} of {row.num_again}",
+                f"`{row.needs}`" if row.needs else "nothing",
+            ],
+        )
+
+    def _table_2(self, headings: list[str], part: int, cells: Callable[[Character], Iterable[str]]) -> str:
+        """A row a method that planned anything, with the paper's adjective last."""
+        adjectives = {method.label: TABLE_2[method.printed][part] for method in self._study.methods if method.printed}
+        rows = [
+            [row.method, *cells(row), adjectives.get(row.method, "")]
+            for row in self._tables.characters
+            if row.num_plans
         ]
+        return _markdown_table(["planner", *headings, "paper"], rows)
 
     def details(self, num_ponds: int) -> str:
         """Return every method on one set: all that is measured."""
@@ -230,12 +252,12 @@ class Wording:
         return [
             f"**Longest route.** `{SEARCH.label}` has the shorter average in {sets_max} of {len(margins)} comparisons "
             f"of a rival and a size. Of {num_farms} pairs of plans its longest route is the shorter one in "
-            f"{num_shorter} and no longer in {num_not_longer}. The closest is `{worst.rival}` at {worst.num_ponds} "
+            f"{num_shorter} and no longer in {num_not_longer}. The hardest is `{worst.rival}` at {worst.num_ponds} "
             f"ponds: {_signed(-worst.max_saved_percent)}.",
             f"**Total, at equal longest route.** Asked for the least total with no route longer than the rival's "
             f"longest, the same planner in the same time has the shorter average in {sets_total} of {len(margins)} "
             f"comparisons; in {num_dominated} of {num_farms} pairs it is better in the total and no worse in the "
-            f"longest route. The closest is `{least.rival}` at {least.num_ponds} ponds: "
+            f"longest route. The hardest is `{least.rival}` at {least.num_ponds} ponds: "
             f"{_signed(-least.total_saved_percent)}.",
         ]
 
@@ -343,12 +365,17 @@ def _seconds(value: float) -> str:
     return f"{_three_digits(1e3 * value)} ms" if value < 1 else f"{_three_digits(value)} s"
 
 
+def _limit(seconds: float) -> str:
+    return f"{1e3 * seconds:g} ms" if seconds < 1 else f"{seconds:g} s"
+
+
 def _percent(value: float | None) -> str:
     return _NOTHING if value is None else f"{value:.1f} %"
 
 
 def _signed(percent: float) -> str:
-    return f"{percent:+.1f} %".replace("-", "\u2212")
+    # Adding 0 makes a negative zero positive.
+    return f"{round(percent, 1) + 0.0:+.1f} %".replace("-", "\u2212")
 
 
 def _range_of(ratios: Sequence[float]) -> str:
