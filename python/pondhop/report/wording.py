@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 from math import sqrt
@@ -87,7 +88,8 @@ class Wording:
         rows = []
         for size in self._scope.num_ponds:
             scores = [None if method is None else self._tables.score(method, size) for _, _, method in columns]
-            best = min((_quantity(score, quantity) for score in scores if score), default=None)
+            complete = [score for score in scores if score and score.num_farms == self._scope.num_farms]
+            best = min((_quantity(score, quantity) for score in complete), default=None)
             cells = [str(size)]
             for (_, printed, _), score in zip(columns, scores, strict=True):
                 if printed is not None:
@@ -116,9 +118,9 @@ class Wording:
             return _NOTHING
         value = _quantity(score, quantity)
         text = _number(value, quantity)
-        if value == best:
-            text = f"**{text}**"
-        return text if score.num_farms == self._scope.num_farms else f"{text} ({score.num_farms})"
+        if score.num_farms < self._scope.num_farms:
+            return f"{text} ({score.num_farms})"
+        return f"**{text}**" if value == best else text
 
     def margins_table(self, kind: Literal["max", "total"]) -> str:
         """Return how much shorter the plans of `search` are than each rival's, and on how many farms."""
@@ -140,7 +142,7 @@ class Wording:
         """Return the time that `search` needs to be no worse than each rival, for the longest route and the total."""
 
         def words(seconds: float | None) -> str:
-            return f"more than {_limit(WITHIN_LIMITS_S[-1])}" if seconds is None else _limit(seconds)
+            return f"> {_limit(WITHIN_LIMITS_S[-1])}" if seconds is None else _limit(seconds)
 
         by_set = {
             (margin.rival, margin.num_ponds): f"{words(margin.seconds_for_max)}, {words(margin.seconds_for_total)}"
@@ -394,6 +396,7 @@ def _list(sizes: Sequence[int]) -> str:
 
 def _markdown_table(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """Return a table with its first column to the left and the others to the right."""
-    headings = list(headings)
+    # A number and its unit stay together where a heading takes two lines.
+    headings = [re.sub(r"(\d) (m?s)\b", "\\1\u00a0\\2", heading) for heading in headings]
     lines = [f"| {' | '.join(headings)} |", "|---|" + "--:|" * (len(headings) - 1)]
     return "\n".join(lines + [f"| {' | '.join(row)} |" for row in rows])
