@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -42,7 +42,7 @@ class Method:
     label: str
     planner: str
     kind: Kind
-    time_limit: TimeLimit = TimeLimit()  # noqa: RUF009 - immutable
+    time_limit: TimeLimit = field(default_factory=TimeLimit)
     seconds_at_100: float = 0.0
     growth: float = 0.0
     most_ponds: int = 10_000
@@ -60,6 +60,16 @@ class Method:
         """
         (entrant,) = parse_entrants(self.planner)
         return entrant
+
+    def require(self) -> None:
+        """Load the planner and plan two ponds with it, so that nothing is under way when it turns out to be missing.
+
+        Raises
+        ------
+        InvalidInput
+            As `entrant`.
+        """
+        _ = self.entrant
 
     @property
     def name(self) -> str:
@@ -173,7 +183,7 @@ def own_methods(planners: Iterable[str], most_ponds: int) -> list[Method]:
             continue
         taken.add(planner)
         try:
-            method.entrant  # noqa: B018 - it is found now, so that nothing runs if one is broken
+            method.require()
         except InvalidInput as error:
             faults += error.faults
         methods.append(method)
@@ -195,7 +205,7 @@ def installed(methods: Sequence[Method]) -> tuple[list[Method], list[LeftOut]]:
     present, left_out = [], []
     for method in methods:
         try:
-            method.entrant  # noqa: B018 - whether it is there is the question
+            method.require()
         except InvalidInput as error:
             if method.kind != "baseline":
                 raise
