@@ -109,7 +109,7 @@ METHODS: tuple[Method, ...] = (
         "ortools",
         "ortools",
         "baseline",
-        seconds_at_100=7.0,
+        seconds_at_100=10.0,
         growth=2.5,
         needs=BASELINES_EXTRA,
         printed="GLOP",
