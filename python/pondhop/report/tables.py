@@ -118,6 +118,11 @@ class Margin:
         return 100 * (1 - self.search_max_route_length / self.rival_max_route_length)
 
     @property
+    def is_within(self) -> bool:
+        """Whether the average longest route of `search` is no longer than the rival's where it minimises the total."""
+        return self.within_max_route_length <= self.rival_max_route_length * (1 + SAME_LENGTH)
+
+    @property
     def total_saved_percent(self) -> float:
         """How much shorter the total of `search` is at the rival's longest route, as a share of the rival's."""
         return 100 * (1 - self.within_total_length / self.rival_total_length)

@@ -128,7 +128,8 @@ class Wording:
         def cell(margin: Margin) -> str:
             if kind == "max":
                 return f"{_signed(-margin.max_saved_percent)} ({margin.num_shorter_max}/{margin.num_farms})"
-            return f"{_signed(-margin.total_saved_percent)} ({margin.num_dominated}/{margin.num_farms})"
+            mark = "" if margin.is_within else "*"
+            return f"{_signed(-margin.total_saved_percent)}{mark} ({margin.num_dominated}/{margin.num_farms})"
 
         by_set = {(margin.rival, margin.num_ponds): cell(margin) for margin in self._tables.margins}
         return self._by_rival(by_set, f"{SEARCH.label}, against")
@@ -248,19 +249,19 @@ class Wording:
         num_not_longer = sum(margin.num_not_longer_max for margin in margins)
         num_dominated = sum(margin.num_dominated for margin in margins)
         worst = min(margins, key=lambda margin: margin.max_saved_percent)
-        least = min(margins, key=lambda margin: margin.total_saved_percent)
+        least = min(margins, key=lambda margin: (margin.is_within, margin.total_saved_percent))
         sets_max = sum(margin.search_max_route_length < margin.rival_max_route_length for margin in margins)
-        sets_total = sum(margin.within_total_length < margin.rival_total_length for margin in margins)
+        sets_total = sum(margin.seconds_for_total == WITHIN_LIMITS_S[0] for margin in margins)
         return [
             f"**Longest route.** `{SEARCH.label}` has the shorter average in {sets_max} of {len(margins)} comparisons "
             f"of a rival and a size. Of {num_farms} pairs of plans its longest route is the shorter one in "
             f"{num_shorter} and no longer in {num_not_longer}. The hardest is `{worst.rival}` at {worst.num_ponds} "
             f"ponds: {_signed(-worst.max_saved_percent)}.",
             f"**Total, at equal longest route.** Asked for the least total with no route longer than the rival's "
-            f"longest, the same planner in the same time has the shorter average in {sets_total} of {len(margins)} "
-            f"comparisons; in {num_dominated} of {num_farms} pairs it is better in the total and no worse in the "
-            f"longest route. The hardest is `{least.rival}` at {least.num_ponds} ponds: "
-            f"{_signed(-least.total_saved_percent)}.",
+            f"longest, the same planner in the same time is no worse in either average in {sets_total} of "
+            f"{len(margins)} comparisons; in {num_dominated} of {num_farms} pairs it is better in the total and no worse "
+            f"in the longest route. The hardest is `{least.rival}` at {least.num_ponds} ponds: "
+            f"{_signed(-least.total_saved_percent)}{'' if least.is_within else ', with a longer longest route'}.",
         ]
 
     def reproduced(self, column: Column) -> str:
@@ -324,11 +325,14 @@ class Wording:
                 found.append(f"`{method.label}` in {', '.join(parts)} ponds")
         return found
 
-    def growth(self, column: Column) -> str:
-        """Return how the time of a method of the paper grows with the number of ponds."""
-        method = self._method_of(column)
-        rows = [row for row in self._tables.characters if method is not None and row.method == method.label]
-        return f"n^{rows[0].growth:.1f}" if rows and rows[0].growth is not None else ""
+    def growths(self) -> list[str]:
+        """Return how the time of each method of the paper grows with the number of ponds."""
+        names = {method.label: method.printed for method in self._study.methods if method.printed}
+        return [
+            f"n^{row.growth:.1f} for {names[row.method]}"
+            for row in self._tables.characters
+            if row.method in names and row.growth is not None
+        ]
 
     def seconds(self, column: Column, num_ponds: int) -> str:
         """Return the measured seconds for 100 farms of a method of the paper."""
