@@ -259,8 +259,8 @@ class Wording:
             f"ponds: {_signed(-worst.max_saved_percent)}.",
             f"**Total, at equal longest route.** Asked for the least total with no route longer than the rival's "
             f"longest, the same planner in the same time is no worse in either average in {sets_total} of "
-            f"{len(margins)} comparisons; in {num_dominated} of {num_farms} pairs it is better in the total and no worse "
-            f"in the longest route. The hardest is `{least.rival}` at {least.num_ponds} ponds: "
+            f"{len(margins)} comparisons; in {num_dominated} of {num_farms} pairs it is better in the total and no "
+            f"worse in the longest route. The hardest is `{least.rival}` at {least.num_ponds} ponds: "
             f"{_signed(-least.total_saved_percent)}{'' if least.is_within else ', with a longer longest route'}.",
         ]
 
