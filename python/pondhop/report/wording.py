@@ -265,13 +265,13 @@ class Wording:
         ]
 
     def reproduced(self, column: Column) -> str:
-        """Return how our run of a method of the paper compares with its row: least and greatest ratio of lengths."""
+        """Return how a method of the paper compares with its row: least and greatest ratio where it planned all farms."""
         scores = [
             score
             for method in self._study.methods
             if method.printed == column
             for score in self._tables.scores
-            if score.method == method.label and score.printed_total_length and score.printed_max_route_length
+            if score.method == method.label and score.num_farms == self._scope.num_farms and score.printed_s
         ]
         if not scores:
             return ""
