@@ -265,7 +265,7 @@ class Wording:
         ]
 
     def reproduced(self, column: Column) -> str:
-        """Return how a method of the paper compares with its row: least and greatest ratio where it planned all farms."""
+        """Return least and greatest ratio of a method to its row in the paper, over the sets it planned whole."""
         scores = [
             score
             for method in self._study.methods
@@ -385,7 +385,8 @@ def _signed(percent: float) -> str:
 
 
 def _range_of(ratios: Sequence[float]) -> str:
-    return f"{100 * min(ratios):.0f} to {100 * max(ratios):.0f} %"
+    least, greatest = (f"{100 * ratio:.0f}" for ratio in (min(ratios), max(ratios)))
+    return f"{least} %" if least == greatest else f"{least} to {greatest} %"
 
 
 def _range(sizes: Sequence[int]) -> str:
