@@ -34,13 +34,18 @@ TOTAL_WEIGHT = 0.1
 
 @dataclass(frozen=True)
 class Architecture:
-    """What the shapes of the weights follow from."""
+    """What the shapes of the weights follow from, and how decided the drawing of rollouts is.
+
+    The probability of a choice is the softmax of `sharpness` times its logit. Sampling at large sizes needs more than
+    1: a rollout of 200 ponds is spoilt by a few unlikely choices, and training would answer to them alone.
+    """
 
     variant: Variant
     width: int = 128
     num_heads: int = 8
     num_layers: int = 3
     feed_forward_width: int = 512
+    sharpness: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,6 +297,7 @@ class AttentionModel(nn.Module):
         logits = self.logits(
             encoding, rollouts.last_nodes.flatten(1), rollouts.states.flatten(1, 2), rollouts.masks.flatten(1, 2)
         )
+        logits = logits * self.architecture.sharpness
         chosen = logits.gather(2, rollouts.actions.flatten(1)[:, :, None])[:, :, 0] - logits.logsumexp(dim=2)
         return chosen.view(num_farms, num_rollouts, num_steps).sum(dim=2)
 
@@ -328,7 +334,7 @@ def roll_out(
             action = logits.argmax(dim=2)
         else:
             # One uniform number a choice; below 1 by more than rounding, it never passes the last open node.
-            cumulative = logits.exp().cumsum(dim=2)
+            cumulative = (logits * model.architecture.sharpness).exp().cumsum(dim=2)
             threshold = torch.rand_like(cumulative[:, :, :1]) * (1 - 1e-6) * cumulative[:, :, -1:]
             action = (cumulative <= threshold).sum(dim=2)
         steps.append((action, routing.last, state, mask, logits if keeps_logits else None))

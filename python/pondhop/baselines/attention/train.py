@@ -51,7 +51,7 @@ class Training:
     num_ponds, num_routes
         Smallest and largest, both drawn for every step.
     usual_num_routes
-        Drawn for a third of the steps, whatever `num_routes` says.
+        Drawn for a half of the steps, whatever `num_routes` says.
     seed
         Of weights, farms and rollouts.
     num_rollouts
@@ -62,6 +62,8 @@ class Training:
         Highest; reached after `num_warmup_steps`, held, and decayed over the second half of training.
     max_gradient_norm
         Longer gradients are shortened to it.
+    sharpness
+        See `Architecture`.
     grown_at
         Share of training after which farms are drawn up to the largest number of ponds.
     frozen_from
@@ -78,6 +80,7 @@ class Training:
     learning_rate: float = 5e-4
     num_warmup_steps: int = 100
     max_gradient_norm: float = 1.0
+    sharpness: float = 1.5
     grown_at: float = 0.4
     frozen_from: float = 0.4
 
@@ -111,7 +114,7 @@ def find_device(name: Literal["auto", "cpu", "cuda"]) -> torch.device:
 def start(training: Training, device: torch.device) -> TrainingState:
     """Return a training before its first step."""
     torch.manual_seed(training.seed)
-    model = AttentionModel(Architecture(training.variant)).to(device)
+    model = AttentionModel(Architecture(training.variant, sharpness=training.sharpness)).to(device)
     for module in model.modules():
         if isinstance(module, nn.BatchNorm1d):
             module.momentum = 0.02
@@ -189,9 +192,10 @@ def step(state: TrainingState, progress: float) -> float:
 def _draw_size(training: Training, progress: float, random: np.random.Generator) -> tuple[int, int]:
     smallest, largest = training.num_ponds
     share = min(1.0, 0.25 + 0.75 * progress / training.grown_at)
-    num_ponds = int(random.integers(smallest, smallest + round(share * (largest - smallest)), endpoint=True))
+    # The square: small farms teach most of it at a fraction of the time.
+    num_ponds = smallest + round(share * (largest - smallest) * random.random() ** 2)
     num_routes = training.usual_num_routes
-    if random.random() > 1 / 3:
+    if random.random() < 0.5:
         num_routes = int(random.integers(*training.num_routes, endpoint=True))
     return num_ponds, num_routes
 
