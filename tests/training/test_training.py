@@ -166,7 +166,6 @@ def test_exported_weights_say_what_they_follow_from(tmp_path: Path) -> None:
         "num_heads": 8,
         "num_layers": 3,
         "feed_forward_width": 512,
-        "sharpness": 1.5,
     }
     assert config["training"]["seed"] == 1
     assert config["num_steps"] == 1
@@ -189,14 +188,3 @@ def test_the_best_symmetry_is_no_worse_than_none(variant: Variant) -> None:
     else:
         cost = [max_lengths + 0.1 * totals / 3 for max_lengths, totals, _ in (best, plain)]
         assert (cost[0] <= cost[1] + 1e-6).all()
-
-
-def test_sharpness_multiplies_the_logits() -> None:
-    model = AttentionModel(Architecture("minmax")).eval()
-    farms = farms_of("minmax", train.draw(6, 2, seed=8), 2)
-    encoding = model.encode(farms)
-    rollouts = roll_out(model, farms, encoding, 3, keeps_logits=True)
-    assert rollouts.logits is not None
-    model.architecture = replace(model.architecture, sharpness=2.0)
-    of_steps = (2 * rollouts.logits).log_softmax(dim=3).gather(3, rollouts.actions[..., None])[..., 0]
-    torch.testing.assert_close(model.log_likelihood(encoding, rollouts), of_steps.sum(dim=2))

@@ -27,25 +27,21 @@ Variant = Literal["cvrp", "minmax"]
 NUM_DEPOT_FEATURES = {"cvrp": 2, "minmax": 4}
 NUM_POND_FEATURES = {"cvrp": 3, "minmax": 4}
 NUM_STATE_FEATURES = {"cvrp": 1, "minmax": 7}
-LOGIT_BOUND = 10.0
+LOGIT_BOUNDS = {"cvrp": 10.0, "minmax": 15.0}
+"""How far logits reach before distance is taken off; farther where a few unlikely choices spoil a long route."""
 TOTAL_WEIGHT = 0.1
 """Weight of the mean route length beside the longest route in the cost of ``minmax``."""
 
 
 @dataclass(frozen=True)
 class Architecture:
-    """What the shapes of the weights follow from, and how decided the drawing of rollouts is.
-
-    The probability of a choice is the softmax of `sharpness` times its logit. Sampling at large sizes needs more than
-    1: a rollout of 200 ponds is spoilt by a few unlikely choices, and training would answer to them alone.
-    """
+    """What the shapes of the weights follow from."""
 
     variant: Variant
     width: int = 128
     num_heads: int = 8
     num_layers: int = 3
     feed_forward_width: int = 512
-    sharpness: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,7 +281,7 @@ class AttentionModel(nn.Module):
             query.view(heads).transpose(1, 2), encoding.keys, encoding.values, attn_mask=mask[:, None]
         )
         glimpse = glimpse.transpose(1, 2).reshape(query.shape)
-        logits = LOGIT_BOUND * torch.tanh(torch.bmm(glimpse, encoding.logit_keys))
+        logits = LOGIT_BOUNDS[self.architecture.variant] * torch.tanh(torch.bmm(glimpse, encoding.logit_keys))
         if encoding.aversion is not None:
             aversion = functional.embedding(last_nodes + offsets, encoding.aversion.reshape(-1, num_nodes))
             logits = logits - aversion
@@ -297,7 +293,6 @@ class AttentionModel(nn.Module):
         logits = self.logits(
             encoding, rollouts.last_nodes.flatten(1), rollouts.states.flatten(1, 2), rollouts.masks.flatten(1, 2)
         )
-        logits = logits * self.architecture.sharpness
         chosen = logits.gather(2, rollouts.actions.flatten(1)[:, :, None])[:, :, 0] - logits.logsumexp(dim=2)
         return chosen.view(num_farms, num_rollouts, num_steps).sum(dim=2)
 
@@ -334,7 +329,7 @@ def roll_out(
             action = logits.argmax(dim=2)
         else:
             # One uniform number a choice; below 1 by more than rounding, it never passes the last open node.
-            cumulative = (logits * model.architecture.sharpness).exp().cumsum(dim=2)
+            cumulative = logits.exp().cumsum(dim=2)
             threshold = torch.rand_like(cumulative[:, :, :1]) * (1 - 1e-6) * cumulative[:, :, -1:]
             action = (cumulative <= threshold).sum(dim=2)
         steps.append((action, routing.last, state, mask, logits if keeps_logits else None))

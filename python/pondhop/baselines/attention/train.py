@@ -62,8 +62,6 @@ class Training:
         Highest; reached after `num_warmup_steps`, held, and decayed over the second half of training.
     max_gradient_norm
         Longer gradients are shortened to it.
-    sharpness
-        See `Architecture`.
     grown_at
         Share of training after which farms are drawn up to the largest number of ponds.
     frozen_from
@@ -80,7 +78,6 @@ class Training:
     learning_rate: float = 5e-4
     num_warmup_steps: int = 100
     max_gradient_norm: float = 1.0
-    sharpness: float = 1.5
     grown_at: float = 0.4
     frozen_from: float = 0.4
 
@@ -114,7 +111,7 @@ def find_device(name: Literal["auto", "cpu", "cuda"]) -> torch.device:
 def start(training: Training, device: torch.device) -> TrainingState:
     """Return a training before its first step."""
     torch.manual_seed(training.seed)
-    model = AttentionModel(Architecture(training.variant, sharpness=training.sharpness)).to(device)
+    model = AttentionModel(Architecture(training.variant)).to(device)
     for module in model.modules():
         if isinstance(module, nn.BatchNorm1d):
             module.momentum = 0.02
