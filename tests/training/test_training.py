@@ -1,5 +1,6 @@
 """The trainer of the attention models. Needs PyTorch, which the main test run does not install: `make train-toy`."""
 
+import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -153,8 +154,6 @@ def test_exported_weights_give_the_same_logits(variant: Variant, tmp_path: Path)
 
 
 def test_exported_weights_say_what_they_follow_from(tmp_path: Path) -> None:
-    import json
-
     state = train.start(TOY, CPU)
     train.run(state, num_steps=1, duration_s=None, report=lambda _: None)
     train.export(state, tmp_path / "toy.npz")

@@ -173,7 +173,7 @@ fn minmax_sees_the_state_of_its_routes() {
             let glimpse = sum / weights.iter().sum::<f32>();
             let mut row = [CLOSED; 4];
             for &node in open {
-                row[node] = 10.0 * (glimpse * xs[node]).tanh();
+                row[node] = 15.0 * (glimpse * xs[node]).tanh();
             }
             row
         };

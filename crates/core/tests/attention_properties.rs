@@ -161,7 +161,8 @@ impl<'a> Oracle<'a> {
         let keys = part(2);
         open.iter()
             .map(|&node| {
-                let logit = 10.0 * (dot(&glimpse, &keys[node]) / (width as f64).sqrt()).tanh();
+                let bound = if self.architecture.variant == Variant::Cvrp { 10.0 } else { 15.0 };
+                let logit = bound * (dot(&glimpse, &keys[node]) / (width as f64).sqrt()).tanh();
                 let distance = distance(self.nodes[last], self.nodes[node]);
                 match self.tensors.get("distance_weight") {
                     Some(weight) => logit - f64::from(weight[[]]) * (distance / self.spacing).ln_1p(),

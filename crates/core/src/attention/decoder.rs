@@ -2,7 +2,7 @@
 //!
 //! A choice is asked of the network by a query made of the mean embedding, the node where the drone is and the state of the
 //! routes. Multi-head attention of the query over the open nodes gathers a glimpse; the product of the glimpse with an open
-//! node's key, bounded to ±10, is the node's logit. [`Variant::MinMax`] takes a learned multiple of the logarithm of the
+//! node's key, bounded, is the node's logit. [`Variant::MinMax`] takes a learned multiple of the logarithm of the
 //! distance off it, and closes the depot to a drone that no other would follow, so that it never uses a route too many.
 //!
 //! Visited ponds are taken out of the arrays instead of being masked, so a step costs O(open nodes): n² / 2 pairs in all.
@@ -16,8 +16,16 @@ use crate::random::Random;
 use ndarray::{Array2, ArrayView2, Axis};
 use std::ops::Range;
 
-/// Logits lie within plus and minus this (Kool et al., equation 7).
-const LOGIT_BOUND: f32 = 10.0;
+impl Variant {
+    /// How far logits reach before distance is taken off (Kool et al., equation 7, who have 10). Farther for routes that
+    /// are few and long: one unlikely choice spoils them, so samples must be more decided.
+    const fn logit_bound(self) -> f32 {
+        match self {
+            Self::Cvrp => 10.0,
+            Self::MinMax => 15.0,
+        }
+    }
+}
 
 /// A farm, encoded: what all its rollouts start from.
 #[derive(Debug)]
@@ -298,8 +306,9 @@ impl Rollout<'_> {
         self.find_query();
         self.find_glimpse(open.clone());
         self.logit_keys.multiply(0..self.query.len(), &self.glimpse, self.nodes.len(), &mut self.logits);
+        let logit_bound = self.decoder.architecture.variant.logit_bound();
         for logit in &mut self.logits[open.clone()] {
-            *logit = LOGIT_BOUND * tanh(*logit);
+            *logit = logit_bound * tanh(*logit);
         }
         let aversion = self.decoder.weights.aversion;
         if aversion != 0.0 {

@@ -27,7 +27,8 @@ Variant = Literal["cvrp", "minmax"]
 NUM_DEPOT_FEATURES = {"cvrp": 2, "minmax": 4}
 NUM_POND_FEATURES = {"cvrp": 3, "minmax": 4}
 NUM_STATE_FEATURES = {"cvrp": 1, "minmax": 7}
-LOGIT_BOUND = 10.0
+LOGIT_BOUNDS = {"cvrp": 10.0, "minmax": 15.0}
+"""How far logits reach before distance is taken off; farther where a few unlikely choices spoil a long route."""
 TOTAL_WEIGHT = 0.1
 """Weight of the mean route length beside the longest route in the cost of ``minmax``."""
 
@@ -280,7 +281,7 @@ class AttentionModel(nn.Module):
             query.view(heads).transpose(1, 2), encoding.keys, encoding.values, attn_mask=mask[:, None]
         )
         glimpse = glimpse.transpose(1, 2).reshape(query.shape)
-        logits = LOGIT_BOUND * torch.tanh(torch.bmm(glimpse, encoding.logit_keys))
+        logits = LOGIT_BOUNDS[self.architecture.variant] * torch.tanh(torch.bmm(glimpse, encoding.logit_keys))
         if encoding.aversion is not None:
             aversion = functional.embedding(last_nodes + offsets, encoding.aversion.reshape(-1, num_nodes))
             logits = logits - aversion

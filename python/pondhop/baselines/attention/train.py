@@ -51,7 +51,7 @@ class Training:
     num_ponds, num_routes
         Smallest and largest, both drawn for every step.
     usual_num_routes
-        Drawn for a third of the steps, whatever `num_routes` says.
+        Drawn for a half of the steps, whatever `num_routes` says.
     seed
         Of weights, farms and rollouts.
     num_rollouts
@@ -189,9 +189,10 @@ def step(state: TrainingState, progress: float) -> float:
 def _draw_size(training: Training, progress: float, random: np.random.Generator) -> tuple[int, int]:
     smallest, largest = training.num_ponds
     share = min(1.0, 0.25 + 0.75 * progress / training.grown_at)
-    num_ponds = int(random.integers(smallest, smallest + round(share * (largest - smallest)), endpoint=True))
+    # The square: small farms teach most of it at a fraction of the time.
+    num_ponds = smallest + round(share * (largest - smallest) * random.random() ** 2)
     num_routes = training.usual_num_routes
-    if random.random() > 1 / 3:
+    if random.random() < 0.5:
         num_routes = int(random.integers(*training.num_routes, endpoint=True))
     return num_ponds, num_routes
 
