@@ -29,7 +29,7 @@ from pondhop.report.study import Measurements, SearchWithin, Study, execute_stud
 from pondhop.report.tables import Tables, csv_files
 
 TINY = Scope(
-    name="quick",
+    options=" --quick",
     num_ponds=(20, 50),
     num_farms=3,
     farm_budget_s=2.0,
@@ -123,6 +123,17 @@ def test_slow_methods_get_fewer_farms() -> None:
     assert TINY.num_farms_of(SLOW, 700) == 0
     assert TINY.num_farms_of(SIX, 50) == 3
     assert TINY.num_scaling_farms_of(SIX, 80) == 0
+
+
+def test_a_budget_decides_how_many_farms_slow_methods_get() -> None:
+    ortools = next(method for method in METHODS if method.planner == "ortools")
+    scope = FULL.with_budget(60.0)
+    # 60 s at 10 s a farm of 100 ponds are 6 farms, at 56.6 s one of 200.
+    assert [scope.num_farms_of(ortools, size) for size in scope.num_ponds] == [33, 6, 1, 0, 0, 0]
+    assert max(scope.anytime_limits_s) == 10.0
+    assert scope.options == " --budget 60"
+    assert FULL.with_budget(400.0).anytime_limits_s == FULL.anytime_limits_s
+    assert QUICK.with_budget(25.0).anytime_limits_s == QUICK.anytime_limits_s
 
 
 @pytest.mark.parametrize(("of_scope", "most_s"), [(FULL, 3.0 * 3600), (QUICK, 14.0 * 60)])

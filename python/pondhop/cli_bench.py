@@ -182,6 +182,14 @@ def paper(
     quick: Annotated[
         bool, typer.Option("--quick", help="10 farms of each size instead of 100: minutes instead of hours.")
     ] = False,
+    budget: Annotated[
+        float | None,
+        typer.Option(
+            min=0,
+            metavar="SECONDS",
+            help="What a planner may take for all farms of a size, else it plans fewer: 400, with --quick 25.",
+        ),
+    ] = None,
     planner: Annotated[
         list[str] | None, typer.Option(metavar="MODULE:FUNCTION", help="A planner of your own to compare, too.")
     ] = None,
@@ -191,6 +199,7 @@ def paper(
     """Compare all planners as the paper does: its tables and figures from new measurements, as one page to send.
 
     - `pondhop bench paper -o report`
+    - `pondhop bench paper -o report --budget 60 --jobs 2`
     - `pondhop bench paper -o report --quick --planner my_module:my_planner`
 
     Writes report.html, which needs no other file, report.md, and the data as CSV files. Baselines that are not
@@ -204,6 +213,8 @@ def paper(
     from pondhop.report.tables import Tables
 
     scope = scopes.QUICK if quick else scopes.FULL
+    if budget is not None:
+        scope = scope.with_budget(budget)
     faults: list[Fault] = []
     own = []
     with _collecting(faults):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pondhop.report.methods import Method
 
@@ -14,6 +14,9 @@ FARM_SEED = 1
 
 PLANNER_SEED = 1
 
+MAX_LIMIT_SHARE = 0.5
+"""Of a budget for a set of farms: the longest time limit for quality against time."""
+
 
 @dataclass(frozen=True)
 class Scope:
@@ -21,8 +24,8 @@ class Scope:
 
     Attributes
     ----------
-    name
-        What the report calls it.
+    options
+        Of the command that measures it.
     num_ponds, num_farms
         Of the sets of farms of Table 1.
     farm_budget_s
@@ -39,7 +42,7 @@ class Scope:
         Index of the farm that figures show, and number of ponds: in the paper's figures 1b and 2, and in figure 3.
     """
 
-    name: str
+    options: str
     num_ponds: tuple[int, ...]
     num_farms: int
     farm_budget_s: float
@@ -52,6 +55,12 @@ class Scope:
     num_repeats: int
     figure_farm: int = 2
     figure_num_ponds: tuple[int, int] = (300, 100)
+
+    def with_budget(self, set_budget_s: float) -> Scope:
+        """Return this scope with fewer or more farms for slow planners, and no time limit beyond half the budget."""
+        limits_s = tuple(limit_s for limit_s in FULL.anytime_limits_s if limit_s <= MAX_LIMIT_SHARE * set_budget_s)
+        options = f"{self.options} --budget {set_budget_s:g}"
+        return replace(self, options=options, set_budget_s=set_budget_s, anytime_limits_s=limits_s)
 
     def num_farms_of(self, method: Method, num_ponds: int) -> int:
         """Return how many farms of a set of Table 1 a method plans: all, the first few, or none."""
@@ -73,7 +82,7 @@ class Scope:
 
 
 FULL = Scope(
-    name="full",
+    options="",
     num_ponds=(50, 100, 200, 300, 500, 700),
     num_farms=100,
     farm_budget_s=60.0,
@@ -87,7 +96,7 @@ FULL = Scope(
 )
 
 QUICK = Scope(
-    name="quick",
+    options=" --quick",
     num_ponds=FULL.num_ponds,
     num_farms=10,
     farm_budget_s=45.0,
