@@ -84,7 +84,7 @@ def train_am(
 
 def _num_ponds(text: str | None, variant: str) -> tuple[int, int] | Fault:
     if text is None:
-        return (50, 50) if variant == "cvrp" else (20, 150)
+        return (50, 50) if variant == "cvrp" else (20, 200)
     parts = text.split(",")
     if len(parts) <= 2 and all(part.isascii() and part.isdigit() for part in parts):
         smallest, largest = int(parts[0]), int(parts[-1])

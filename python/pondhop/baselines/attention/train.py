@@ -7,7 +7,8 @@ of their steps adds afterwards. Every step draws new farms of one size from the 
 to step, from small to large as training goes on.
 
 Batch normalisation uses the statistics of the batch at first. Batches of different sizes differ in them, and inference
-has only their running mean, so the later part of training runs with that mean as well (`Training.frozen_from`).
+has only their running mean, so the last part of training, at low learning rates, runs with that mean as well
+(`Training.frozen_from`).
 """
 
 from __future__ import annotations
@@ -75,11 +76,11 @@ class Training:
     seed: int = 1
     num_rollouts: int = 16
     num_learned_rollouts: int = 8
-    learning_rate: float = 5e-4
+    learning_rate: float = 3e-4
     num_warmup_steps: int = 100
     max_gradient_norm: float = 1.0
-    grown_at: float = 0.4
-    frozen_from: float = 0.4
+    grown_at: float = 0.5
+    frozen_from: float = 0.85
 
 
 @dataclass
