@@ -62,7 +62,7 @@ def draw_margins(tables: Tables, theme: Theme) -> Axes:
                 _draw_line(ax, coordinates, rival.label, styles[rival.name], look)
         ax.axhline(1, color=styles[SEARCH.name].colour, linewidth=2.2, label=SEARCH.label, zorder=2)
         ax.set_yscale("log")
-        _number_axis(ax, "x", sorted(tables.study.scope.num_ponds), "ponds", look)
+        _pond_axis(ax, sorted(tables.study.scope.num_ponds), look)
         _write_title(ax, title, look)
     lowest, highest = min(left.get_ylim()[0], 0.96), max(left.get_ylim()[1], 1.12)
     ticks = [tick for tick in (0.6, 0.8, 1, 1.25, 1.5, 2, 3, 4, 6, 10) if lowest <= tick <= highest]
@@ -121,7 +121,7 @@ def draw_scaling(tables: Tables, theme: Theme) -> Axes:
             style = replace(styles[method.name], dashes="--") if method == LONG_SEARCH else styles[method.name]
             if coordinates:
                 _draw_line(ax, coordinates, method.label, style, look)
-        _number_axis(ax, "x", _some_sizes(list(tables.study.farms)), "ponds", look)
+        _pond_axis(ax, _some_sizes(list(tables.study.farms)), look)
         _write_title(ax, title, look)
     left.set_yscale("log")
     _time_axis(left.yaxis, left.get_ylim())
@@ -171,12 +171,11 @@ def _draw_line(ax: Axes, coordinates: Sequence[tuple[float, float]], label: str,
     )
 
 
-def _number_axis(ax: Axes, which: str, numbers: Sequence[float], name: str, look: Look) -> None:
-    """A logarithmic axis with ticks at these numbers alone."""
-    ax.set(**{f"{which}scale": "log"})
-    _set_ticks(ax.xaxis if which == "x" else ax.yaxis, numbers, [f"{number:,}" for number in numbers])
-    ax.set(**{f"{which}label": name})
-    ax.xaxis.label.set_color(look.faint_ink)
+def _pond_axis(ax: Axes, sizes: Sequence[int], look: Look) -> None:
+    """A logarithmic axis of numbers of ponds, with ticks at these alone."""
+    ax.set_xscale("log")
+    _set_ticks(ax.xaxis, sizes, [f"{size:,}" for size in sizes])
+    ax.set_xlabel("ponds", color=look.faint_ink)
 
 
 def _time_axis(axis: Axis, limits: tuple[float, float]) -> None:

@@ -56,6 +56,13 @@ class Scope:
     figure_farm: int = 2
     figure_num_ponds: tuple[int, int] = (300, 100)
 
+    @property
+    def halves(self) -> tuple[list[int], list[int]]:
+        """Numbers of ponds of the smaller sets of Table 1, and of the larger ones."""
+        sizes = sorted(self.num_ponds)
+        num_small = -(-len(sizes) // 2)
+        return sizes[:num_small], sizes[num_small:]
+
     def with_budget(self, set_budget_s: float) -> Scope:
         """Return this scope with fewer or more farms for slow planners, and no time limit beyond half the budget."""
         limits_s = tuple(limit_s for limit_s in FULL.anytime_limits_s if limit_s <= MAX_LIMIT_SHARE * set_budget_s)

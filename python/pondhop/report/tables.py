@@ -329,13 +329,11 @@ class Tables:
 
     def _character(self, method: Method) -> Character:
         study = self.study
-        sizes = sorted(study.scope.num_ponds)
-        sets = {size: self._runs(study.table(method, size)) for size in sizes}
+        sets = {size: self._runs(study.table(method, size)) for size in study.scope.num_ponds}
         sets = {size: runs for size, runs in sets.items() if runs}
         runs = [run for of_set in sets.values() for run in of_set]
         scaling = [point for point in self.scaling if point.method == method.label]
-        halves = sizes[: math.ceil(len(sizes) / 2)], sizes[math.ceil(len(sizes) / 2) :]
-        small, large = (_mean([self._gap(sets[size]) for size in half if size in sets]) for half in halves)
+        small, large = (_mean([self._gap(sets[size]) for size in half if size in sets]) for half in study.scope.halves)
         repeats = study.repeats(method)
         same = [self.measurements.routes(first) == self.measurements.routes(again) for first, again in repeats]
         return Character(

@@ -161,8 +161,7 @@ class Wording:
 
     def optimality(self) -> str:
         """Return the first part of Table 2."""
-        half = -(-len(self._scope.num_ponds) // 2)
-        small, large = sorted(self._scope.num_ponds)[:half], sorted(self._scope.num_ponds)[half:]
+        small, large = self._scope.halves
         headings = [f"above best, {_range(small)} ponds", f"above best, {_range(large)} ponds"]
         return self._table_2(headings, 0, lambda row: map(_percent, (row.gap_small_percent, row.gap_large_percent)))
 
