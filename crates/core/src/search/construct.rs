@@ -90,7 +90,7 @@ pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mu
 }
 
 /// Ends of new sectors, each with its share of the cost, were cost spread evenly within each old sector.
-fn ends_by_cost(old_ends: &[usize], old_costs: &[f64], shares: &[f64]) -> Vec<usize> {
+pub(super) fn ends_by_cost(old_ends: &[usize], old_costs: &[f64], shares: &[f64]) -> Vec<usize> {
     let cost_of_a_share = old_costs.iter().sum::<f64>() / shares.iter().sum::<f64>();
     let mut ends = vec![0];
     let (mut sum, mut goal) = (0.0, shares[0] * cost_of_a_share);

@@ -6,7 +6,8 @@
 //! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
 //! (`improve`); if the effort allows, a race of several cuts of the sectors; from the winner, ruin (`ruin`) and
 //! recreate (`recreate`) under annealing (`anneal`), first for the longest route, then for the total with the longest route
-//! as a limit. Threads share their best plans now and then (`cooperate`).
+//! as a limit. Threads share their best plans now and then (`cooperate`). A time too short for all that goes into a rough
+//! plan (`rough`): sectors toured along strips, smoothed without neighbour lists (`smooth`) and balanced.
 //!
 //! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
 //! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
@@ -19,7 +20,9 @@ mod cooperate;
 mod improve;
 mod network;
 mod recreate;
+mod rough;
 mod ruin;
+mod smooth;
 mod state;
 
 use crate::problem::Problem;
@@ -32,9 +35,9 @@ pub use budget::{Clock, Progress, Watch};
 use construct::Sweep;
 pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap, pseudo_angle};
 use cooperate::Meeting;
-use improve::smooth;
 pub(crate) use network::Network;
 pub(crate) use recreate::Objective;
+use rough::RoughPlan;
 pub(crate) use state::State;
 
 /// What the search minimises.
@@ -106,8 +109,8 @@ const SHARE_SPREAD: f64 = 0.3;
 const RACE_STEPS_PER_VISIT: f64 = 5.0;
 /// Steps that take as long as making a start, per visit.
 const START_STEPS_PER_VISIT: f64 = 0.3;
-/// How long finding neighbours takes, in times of the rough plan.
-const NEIGHBOURS_COST: f64 = 12.0;
+/// How long it takes to find neighbours and to do better with them than without, in times of making a rough plan.
+const NEIGHBOURS_COST: f64 = 28.0;
 /// Temperatures relative to the longest route.
 const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
 const MAX_HEAT: (f64, f64) = (1e-2, 1e-6);
@@ -122,11 +125,10 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);
     if options.start.is_none() {
-        let mut rough = Sweep::new(&network).sectors(&vec![1.0; network.num_routes]);
+        let rough = RoughPlan::new(&network);
         // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
         if budget.share(0) * NEIGHBOURS_COST > 1.0 {
-            rough.iter_mut().for_each(|route| smooth(&network, route));
-            return Outcome { routes: to_indices(rough), num_iterations: 0 };
+            return Outcome { routes: to_indices(rough.improved(&budget)), num_iterations: 0 };
         }
     }
     network.find_neighbours();
