@@ -9,6 +9,7 @@ use pondhop_core::problem::{Depot, Problem, VehicleType, Visit};
 use pondhop_core::search::{Goal, Options, Progress, solve};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 fn plan(problem: &Problem, options: &Options<'_>) -> Plan {
@@ -147,6 +148,21 @@ fn a_clock_that_runs_out_at_any_look_gives_a_plan() {
         let plan = plan(&problem, &Options { clock: Some(&clock), ..Options::default() });
         assert!(plan.is_feasible());
     }
+}
+
+#[test]
+fn progress_tells_of_the_best_plan_so_far() {
+    let reported = Mutex::new(Vec::new());
+    let watch = |progress: &Progress| {
+        reported.lock().unwrap().push(progress.max_route_cost);
+        ControlFlow::Continue(())
+    };
+    let problem = farm(60, 4);
+    let plan = plan(&problem, &Options { watch: Some(&watch), ..iterations(40_000) });
+    let reported = reported.into_inner().unwrap();
+    let rounding = 1.0 + 1e-9;
+    assert!(reported.len() > 10 && reported.windows(2).all(|pair| pair[1] <= pair[0] * rounding), "{reported:?}");
+    assert!(plan.makespan() <= reported[reported.len() - 1] * rounding);
 }
 
 #[test]

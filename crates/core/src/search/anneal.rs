@@ -48,6 +48,8 @@ pub(crate) struct Chain<A> {
     /// Steps made.
     pub num_iterations: u64,
     pub objective: Objective,
+    /// Longest route of the best plan beside this chain's, so that progress tells of the best of all.
+    pub longest_elsewhere: f64,
     random: Random,
     current: State,
     current_value: f64,
@@ -69,6 +71,7 @@ impl<A: Airspace> Chain<A> {
             best_rank: rank,
             num_iterations: 0,
             objective,
+            longest_elsewhere: f64::INFINITY,
             random: Random::new(seed),
             current: state.clone(),
             current_value: value,
@@ -111,7 +114,8 @@ impl<A: Airspace> Chain<A> {
             self.num_iterations += STEPS_PER_LOOK;
             if self.num_iterations.is_multiple_of(STEPS_PER_REPORT) {
                 let num_iterations = self.num_iterations;
-                budget.report(&Progress { max_route_cost: self.best.max_route_cost(), num_iterations, share });
+                let max_route_cost = self.best.max_route_cost().min(self.longest_elsewhere);
+                budget.report(&Progress { max_route_cost, num_iterations, share });
             }
             share = budget.share(self.num_iterations);
         }
@@ -125,7 +129,7 @@ impl<A: Airspace> Chain<A> {
         let is_complete = self.recreate.insert(
             network,
             &mut self.trial,
-            &self.ruin,
+            &self.ruin.removed,
             &self.objective,
             threshold,
             &mut self.airspace,

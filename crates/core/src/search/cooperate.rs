@@ -21,18 +21,16 @@ impl Meeting {
         Self { barrier: Barrier::new(num_threads), plans: Mutex::new(vec![None; num_threads]) }
     }
 
-    /// Every thread that brought a worse plan goes on from the best one; the first of equals wins.
-    pub fn share_best(&self, thread: usize, chain: &mut Chain<impl Airspace>) {
+    /// Waits for all threads, and says which plan is better than the one this thread brings: the best, the first of equals.
+    pub fn best_of_all(&self, thread: usize, brought: &Chain<impl Airspace>) -> Option<State> {
         let lock = || self.plans.lock().unwrap_or_else(PoisonError::into_inner);
         if lock().len() == 1 {
-            return;
+            return None;
         }
-        lock()[thread] = Some((chain.best_rank, chain.best.clone()));
+        lock()[thread] = Some((brought.best_rank, brought.best.clone()));
         self.barrier.wait();
         let best = lock().iter().flatten().min_by(|a, b| a.0.compare(&b.0)).cloned();
-        if let Some((_, state)) = best.filter(|best| best.0.is_better(&chain.best_rank)) {
-            chain.adopt(&state);
-        }
         self.barrier.wait();
+        best.filter(|best| best.0.is_better(&brought.best_rank)).map(|best| best.1)
     }
 }

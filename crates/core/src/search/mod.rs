@@ -4,9 +4,9 @@
 //! service times and a fixed time per leg. Costs are seconds, which in a research instance are length units.
 //!
 //! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
-//! (`improve`); if the effort allows, a race of several cuts of the sectors; from the winner, ruin (`ruin`) and
-//! recreate (`recreate`) under annealing (`anneal`), first for the longest route, then for the total with the longest route
-//! as a limit. Threads share their best plans now and then (`cooperate`). A time too short for all that goes into a rough
+//! (`improve`); if the effort allows, a race of several cuts of the sectors (`population`); from the winner, ruin (`ruin`) and
+//! recreate (`recreate`) under annealing (`anneal`), or, with more effort, children of the best plans (`recombine`), annealed
+//! likewise; all that for the longest route, then annealing for the total with the longest route as a limit. Threads share their best plans now and then (`cooperate`). A time too short for all that goes into a rough
 //! plan (`rough`): sectors toured along strips, smoothed without neighbour lists (`smooth`) and balanced.
 //!
 //! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
@@ -19,6 +19,8 @@ mod construct;
 mod cooperate;
 mod improve;
 mod network;
+mod population;
+mod recombine;
 mod recreate;
 mod rough;
 mod ruin;
@@ -26,7 +28,6 @@ mod smooth;
 mod state;
 
 use crate::problem::Problem;
-use crate::random::Random;
 pub(crate) use airspace::Airspace;
 use airspace::SharedAirspace;
 pub(crate) use anneal::{Chain, Schedule};
@@ -36,6 +37,7 @@ use construct::Sweep;
 pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap, pseudo_angle};
 use cooperate::Meeting;
 pub(crate) use network::Network;
+use population::Population;
 pub(crate) use recreate::Objective;
 use rough::RoughPlan;
 pub(crate) use state::State;
@@ -95,24 +97,13 @@ pub struct Outcome {
     pub num_iterations: u64,
 }
 
-/// Share of the effort at which the race of the starts ends.
-const RACE_END: f64 = 0.25;
 /// Shares of the effort at which threads share their best plan while they work on the longest route.
 const MEETINGS: [f64; 2] = [0.5, 0.7];
 /// Share of the effort at which the work on the longest route ends.
 const MAX_END: f64 = 0.88;
-/// Starts in a race, at most.
-const MAX_STARTS: usize = 16;
-/// How far the shares of the sectors of a start are from equal, at most: wide enough for other petals to win.
-const SHARE_SPREAD: f64 = 0.3;
-/// Steps per visit and start below which a race gains less than it costs.
-const RACE_STEPS_PER_VISIT: f64 = 5.0;
-/// Steps that take as long as making a start, per visit.
-const START_STEPS_PER_VISIT: f64 = 0.3;
 /// How long it takes to find neighbours and to do better with them than without, in times of making a rough plan.
 const NEIGHBOURS_COST: f64 = 28.0;
 /// Temperatures relative to the longest route.
-const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
 const MAX_HEAT: (f64, f64) = (1e-2, 1e-6);
 const TOTAL_HEAT: (f64, f64) = (3e-3, 3e-6);
 
@@ -161,71 +152,28 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// One thread's search: race, longest route, total.
+    /// One thread's search: the longest route, by several plans if the effort allows, then the total of the best.
     fn run(&self, thread: usize) -> Chain<SharedAirspace> {
-        let mut chain = match (self.options.start, self.options.goal) {
-            (Some(routes), _) => self.chain_from(&to_nodes(routes), thread as u64),
-            (None, Goal::Max) => self.race(thread),
-            (None, Goal::Total) => self.fewest_routes(thread),
+        let mut population = match (self.options.start, self.options.goal) {
+            (Some(routes), _) => Population::single(self.chain_from(&to_nodes(routes), thread as u64)),
+            (None, Goal::Max) => Population::race(self, thread),
+            (None, Goal::Total) => Population::single(self.fewest_routes(thread)),
         };
         let floor = self.network.farthest_visit_bound() * (1.0 + 1e-12);
-        let max_end = if chain.best.max_route_cost() <= self.goal_cap() { 0.0 } else { MAX_END };
-        let schedule = self.schedule(&chain, max_end, MAX_HEAT);
+        let max_end = if population.best().best.max_route_cost() <= self.goal_cap() { 0.0 } else { MAX_END };
+        let schedule = self.schedule(population.best(), max_end, MAX_HEAT);
         // Every thread comes to every meeting, also one that has nothing left to do, or the others would wait for ever.
         for until in MEETINGS.into_iter().chain([MAX_END]) {
-            chain.anneal(self.network, self.budget, &schedule, until.min(max_end), floor);
-            self.meeting.share_best(thread, &mut chain);
+            population.improve(self, &schedule, until.min(max_end), floor);
+            if let Some(best) = self.meeting.best_of_all(thread, population.best()) {
+                population.welcome(&best);
+            }
         }
+        let mut chain = population.into_best();
         chain.restart(self.total_objective(&chain.best));
         let schedule = self.schedule(&chain, 1.0, TOTAL_HEAT);
         chain.anneal(self.network, self.budget, &schedule, 1.0, 0.0);
         chain
-    }
-
-    /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until one is left.
-    fn race(&self, thread: usize) -> Chain<SharedAirspace> {
-        let sweep = Sweep::new(self.network);
-        let start = |index: usize| {
-            let stream = (index * self.options.num_threads + thread) as u64;
-            let mut routes = sweep.sectors(&self.shares(stream));
-            improve_routes(self.network, self.budget, &mut routes);
-            self.chain_from(&routes, stream)
-        };
-        let begin = self.budget.share(0);
-        let mut chains = vec![start(0)];
-        let start_steps = START_STEPS_PER_VISIT * self.network.num_visits as f64;
-        let start_share = self.budget.share_of_work(start_steps, begin);
-        let num_starts = (START_STEPS_PER_VISIT / RACE_STEPS_PER_VISIT / start_share) as usize;
-        let num_starts = num_starts.clamp(1, MAX_STARTS);
-        chains.extend((1..num_starts).map(start));
-        let mut num_iterations = 0;
-        while chains.len() > 1 {
-            let begin = self.budget.share(num_iterations);
-            let num_rounds = (chains.len() as f64).log2().ceil();
-            let slice = (RACE_END - begin).max(0.0) / num_rounds / chains.len() as f64;
-            for (index, chain) in chains.iter_mut().enumerate() {
-                chain.num_iterations = num_iterations;
-                let from = begin + slice * index as f64;
-                let (hot, cold) =
-                    (RACE_HEAT.0 * chain.best.max_route_cost(), RACE_HEAT.1 * chain.best.max_route_cost());
-                let schedule = Schedule { begin: from, end: from + slice, hot, cold };
-                chain.restart(chain.objective);
-                chain.anneal(self.network, self.budget, &schedule, from + slice, 0.0);
-                num_iterations = chain.num_iterations;
-            }
-            chains.sort_by(|a, b| a.best_rank.compare(&b.best_rank));
-            chains.truncate(chains.len().div_ceil(2));
-        }
-        let mut winner = chains.swap_remove(0);
-        winner.num_iterations = num_iterations;
-        winner
-    }
-
-    /// Shares of the sectors of a start: equal for the first, random about that for the others.
-    fn shares(&self, stream: u64) -> Vec<f64> {
-        let spread = if stream == 0 { 0.0 } else { SHARE_SPREAD };
-        let mut random = Random::new(self.seed(stream));
-        (0..self.network.num_routes).map(|_| 1.0 + spread * (2.0 * random.uniform() - 1.0)).collect()
     }
 
     fn seed(&self, stream: u64) -> u64 {

@@ -6,8 +6,7 @@
 
 use super::airspace::Airspace;
 use super::network::Network;
-use super::ruin::Ruin;
-use super::state::{ABSENT, State, Touched};
+use super::state::{ABSENT, RouteCosts, State, Touched};
 use crate::random::Random;
 use std::cmp::Ordering;
 
@@ -50,7 +49,12 @@ impl Objective {
 
     /// What `state` costs.
     pub fn value(&self, state: &State) -> f64 {
-        self.max_weight * state.max_route_cost() + self.total_weight * state.total
+        self.value_of(RouteCosts { longest: state.max_route_cost(), total: state.total })
+    }
+
+    /// What a plan with routes of these costs costs.
+    pub fn value_of(&self, costs: RouteCosts) -> f64 {
+        self.max_weight * costs.longest + self.total_weight * costs.total
     }
 
     /// By what two plans are compared in the end: the longest route first, if it counts, then the total. The value, which
@@ -59,6 +63,9 @@ impl Objective {
         Rank { longest: if self.max_weight > 0.0 { state.max_route_cost() } else { 0.0 }, total: state.total }
     }
 }
+
+/// By how much sums of the same legs differ at most, after many changes.
+const ROUNDING: f64 = 1e-8;
 
 /// How good a plan is: less is better, the fields in falling order of importance.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +78,12 @@ impl Rank {
     /// Orders two ranks, the better one first.
     pub fn compare(&self, other: &Self) -> Ordering {
         self.longest.total_cmp(&other.longest).then(self.total.total_cmp(&other.total))
+    }
+
+    /// Whether this is equal to `other` but for rounding.
+    pub fn is_about(&self, other: &Self) -> bool {
+        let is_near = |one: f64, other: f64| (one - other).abs() <= ROUNDING * other;
+        is_near(self.longest, other.longest) && is_near(self.total, other.total)
     }
 
     /// Whether this is better than `other`.
@@ -93,20 +106,20 @@ struct Place {
 }
 
 impl Recreate {
-    /// Inserts what `ruin` removed. Returns false, with visits still absent, once the result is sure to exceed `threshold`.
+    /// Inserts the `removed` visits. Returns false, with visits still absent, once the result is sure to exceed `threshold`.
     #[allow(clippy::too_many_arguments)]
     pub fn insert(
         &mut self,
         network: &Network,
         state: &mut State,
-        ruin: &Ruin,
+        removed: &[u32],
         objective: &Objective,
         threshold: f64,
         airspace: &mut impl Airspace,
         random: &mut Random,
         touched: &mut Touched,
     ) -> bool {
-        self.order(network, &ruin.removed, random);
+        self.order(network, removed, random);
         let mut longest: f64 = 0.0;
         for &(_, visit) in &self.keyed {
             let Some(place) = cheapest_place(network, state, visit, objective, airspace, random.bits()) else {

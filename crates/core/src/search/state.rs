@@ -30,6 +30,13 @@ pub(crate) struct State {
     pub total: f64,
 }
 
+/// Costs of the routes of a plan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RouteCosts {
+    pub longest: f64,
+    pub total: f64,
+}
+
 /// Which parts of a state one step touched; members may repeat.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touched {
@@ -132,20 +139,20 @@ impl State {
 
     /// Visits per route in flying order; empty routes are left out.
     pub fn routes(&self, network: &Network) -> Vec<Vec<u32>> {
-        let mut routes = Vec::with_capacity(network.num_routes);
-        for route in 0..network.num_routes {
-            let depot = (network.num_visits + route) as u32;
-            let mut visits = Vec::with_capacity(self.route_sizes[route] as usize);
-            let mut node = self.nodes[depot as usize].next;
-            while node != depot {
-                visits.push(node);
-                node = self.nodes[node as usize].next;
-            }
-            if !visits.is_empty() {
-                routes.push(visits);
-            }
+        let routes = (0..network.num_routes).map(|route| self.route(network, route));
+        routes.filter(|visits| !visits.is_empty()).collect()
+    }
+
+    /// Visits of one route in flying order.
+    pub fn route(&self, network: &Network, route: usize) -> Vec<u32> {
+        let depot = (network.num_visits + route) as u32;
+        let mut visits = Vec::with_capacity(self.route_sizes[route] as usize);
+        let mut node = self.nodes[depot as usize].next;
+        while node != depot {
+            visits.push(node);
+            node = self.nodes[node as usize].next;
         }
-        routes
+        visits
     }
 
     /// Cost of the longest route.

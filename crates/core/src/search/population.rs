@@ -1,0 +1,193 @@
+//! Several plans at once: starts that race, then children of the survivors.
+//!
+//! Which start leads to the best plan cannot be seen from it, so that many are improved a little and the better half goes on.
+//! What is left are the parents: two of them make a child ([`super::recombine`]), which is annealed for a while, takes what is
+//! better in the other plans, and replaces a worse one. After Prins, Computers & Operations Research 2004, whose memetic
+//! algorithm improves every child by local search.
+
+use super::airspace::SharedAirspace;
+use super::anneal::{Chain, Schedule};
+use super::construct::Sweep;
+use super::recombine::{blend, cross};
+use super::recreate::Objective;
+use super::state::State;
+use super::{MAX_HEAT, Search, improve_routes};
+use crate::random::Random;
+
+/// Share of the effort at which the race of the starts ends.
+const RACE_END: f64 = 0.25;
+/// Starts in a race, at most.
+const MAX_STARTS: usize = 16;
+/// How far the shares of the sectors of a start are from equal, at most: wide enough for other petals to win.
+const SHARE_SPREAD: f64 = 0.3;
+/// Steps per visit and start below which a race gains less than it costs.
+const RACE_STEPS_PER_VISIT: f64 = 5.0;
+/// Steps that take as long as making a start, per visit.
+const START_STEPS_PER_VISIT: f64 = 0.3;
+/// Steps per visit of the whole effort from which on several plans with children are better than one that is annealed longer:
+/// at least the first, and the second times the number of visits.
+const CHILDREN_STEPS_PER_VISIT: (f64, f64) = (100.0, 0.4);
+/// Steps per visit of the whole effort for one more parent.
+const STEPS_PER_VISIT_AND_PARENT: f64 = 200.0;
+/// Parents, if there are children.
+const MIN_PARENTS: usize = 4;
+const MAX_PARENTS: usize = 16;
+/// Steps per visit for one child, at least.
+const CHILD_STEPS_PER_VISIT: f64 = 10.0;
+/// Share of the effort for one child, at least: with more children they become alike before the effort is used.
+const MIN_CHILD_SHARE: f64 = 0.006;
+/// Temperatures relative to the longest route.
+const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
+const CHILD_HEAT: (f64, f64) = (MAX_HEAT.0, RACE_HEAT.1);
+
+/// The plans of one thread, the best first.
+pub(super) struct Population {
+    chains: Vec<Chain<SharedAirspace>>,
+    random: Random,
+    /// Share of the effort for one child.
+    child_share: f64,
+}
+
+impl Population {
+    /// One plan, which has no children.
+    pub fn single(chain: Chain<SharedAirspace>) -> Self {
+        Self { chains: vec![chain], random: Random::new(0), child_share: 0.0 }
+    }
+
+    /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until those are left that
+    /// can have enough children: one, if there is no effort for children.
+    pub fn race(search: &Search<'_>, thread: usize) -> Self {
+        let sweep = Sweep::new(search.network);
+        let start = |index: usize| {
+            let stream = (index * search.options.num_threads + thread) as u64;
+            let mut routes = sweep.sectors(&shares(search, stream));
+            improve_routes(search.network, search.budget, &mut routes);
+            search.chain_from(&routes, stream)
+        };
+        let begin = search.budget.share(0);
+        let mut chains = vec![start(0)];
+        let start_steps = START_STEPS_PER_VISIT * search.network.num_visits as f64;
+        // Steps a visit that the whole effort is worth.
+        let effort = START_STEPS_PER_VISIT / search.budget.share_of_work(start_steps, begin);
+        let num_starts = ((effort / RACE_STEPS_PER_VISIT) as usize).clamp(1, MAX_STARTS);
+        chains.extend((1..num_starts).map(start));
+        let least_effort =
+            CHILDREN_STEPS_PER_VISIT.0.max(CHILDREN_STEPS_PER_VISIT.1 * search.network.num_visits as f64);
+        let num_parents = if effort < least_effort || search.network.num_routes == 1 {
+            1
+        } else {
+            ((effort / STEPS_PER_VISIT_AND_PARENT) as usize).clamp(MIN_PARENTS, MAX_PARENTS)
+        };
+        let random = Random::new(search.seed(u64::MAX - thread as u64));
+        let child_share = (CHILD_STEPS_PER_VISIT / effort).max(MIN_CHILD_SHARE);
+        let mut population = Self { chains, random, child_share };
+        let num_rounds = (num_starts as f64 / num_parents as f64).log2().ceil() as usize;
+        // Also starts that are all to be parents must first be improved.
+        for rounds_left in (1..=num_rounds.max(usize::from(num_starts > 1))).rev() {
+            population.run_round(search, rounds_left);
+            population.chains.truncate(population.chains.len().div_ceil(2).max(num_parents));
+        }
+        population
+    }
+
+    /// Anneals all plans for the same share of what is left for the race.
+    fn run_round(&mut self, search: &Search<'_>, rounds_left: usize) {
+        let mut num_iterations = self.chains[0].num_iterations;
+        let begin = search.budget.share(num_iterations);
+        let slice = (RACE_END - begin).max(0.0) / rounds_left as f64 / self.chains.len() as f64;
+        let mut longest = self.chains.iter().map(|chain| chain.best.max_route_cost()).fold(f64::INFINITY, f64::min);
+        for (index, chain) in self.chains.iter_mut().enumerate() {
+            chain.num_iterations = num_iterations;
+            chain.longest_elsewhere = longest;
+            let from = begin + slice * index as f64;
+            chain.restart(chain.objective);
+            anneal(search, chain, (from, from + slice), RACE_HEAT);
+            num_iterations = chain.num_iterations;
+            longest = longest.min(chain.best.max_route_cost());
+        }
+        sort(&mut self.chains);
+        self.chains[0].num_iterations = num_iterations;
+    }
+
+    /// The plan with the shortest longest route.
+    pub fn best(&self) -> &Chain<SharedAirspace> {
+        &self.chains[0]
+    }
+
+    pub fn into_best(mut self) -> Chain<SharedAirspace> {
+        let mut best = self.chains.swap_remove(0);
+        best.longest_elsewhere = f64::INFINITY;
+        best
+    }
+
+    /// Takes in a plan that is better than all: in the place of the worst.
+    pub fn welcome(&mut self, state: &State) {
+        let num_iterations = self.chains[0].num_iterations;
+        if let Some(worst) = self.chains.last_mut() {
+            worst.adopt(state);
+        }
+        self.chains.rotate_right(1);
+        self.chains[0].num_iterations = num_iterations;
+    }
+
+    /// Improves the plan by itself, by `schedule`, or the plans by children, until the share `until` of the effort is used, or
+    /// no route is longer than `floor`, which none can undercut.
+    pub fn improve(&mut self, search: &Search<'_>, schedule: &Schedule, until: f64, floor: f64) {
+        if self.chains.len() == 1 {
+            return self.chains[0].anneal(search.network, search.budget, schedule, until, floor);
+        }
+        let mut num_iterations = self.chains[0].num_iterations;
+        let mut share = search.budget.share(num_iterations);
+        while share < until && self.best().best.max_route_cost() > floor {
+            let mut child = self.child(search);
+            child.num_iterations = num_iterations;
+            child.longest_elsewhere = self.best().best.max_route_cost();
+            anneal(search, &mut child, (share, (share + self.child_share).min(until)), CHILD_HEAT);
+            num_iterations = child.num_iterations;
+            share = search.budget.share(num_iterations);
+            self.take(search, child);
+        }
+        self.chains[0].num_iterations = num_iterations;
+    }
+
+    fn child(&mut self, search: &Search<'_>) -> Chain<SharedAirspace> {
+        let keeper = self.random.below(self.chains.len());
+        let giver = (keeper + 1 + self.random.below(self.chains.len() - 1)) % self.chains.len();
+        let state = cross(search.network, &self.chains[keeper].best, &self.chains[giver].best, &mut self.random);
+        let objective = Objective::longest_route(search.network, &state);
+        Chain::new(search.network, state, objective, self.random.bits(), SharedAirspace)
+    }
+
+    /// Gives `child` what is better in the others, and puts it in the place of the worst, if it is better.
+    fn take(&mut self, search: &Search<'_>, mut child: Chain<SharedAirspace>) {
+        for other in &self.chains {
+            if let Some(better) = blend(search.network, &child.best, &other.best, &child.objective) {
+                child.adopt(&better);
+            }
+        }
+        let is_known = self.chains.iter().any(|other| other.best_rank.is_about(&child.best_rank));
+        let last = self.chains.len() - 1;
+        if !is_known && child.best_rank.is_better(&self.chains[last].best_rank) {
+            self.chains[last] = child;
+            sort(&mut self.chains);
+        }
+    }
+}
+
+fn sort(chains: &mut [Chain<SharedAirspace>]) {
+    chains.sort_by(|a, b| a.best_rank.compare(&b.best_rank));
+}
+
+/// Anneals between two shares of the effort, with temperatures relative to the longest route.
+fn anneal(search: &Search<'_>, chain: &mut Chain<SharedAirspace>, (begin, end): (f64, f64), (hot, cold): (f64, f64)) {
+    let scale = chain.best.max_route_cost();
+    let schedule = Schedule { begin, end, hot: hot * scale, cold: cold * scale };
+    chain.anneal(search.network, search.budget, &schedule, end, 0.0);
+}
+
+/// Shares of the sectors of a start: equal for the first, random about that for the others.
+fn shares(search: &Search<'_>, stream: u64) -> Vec<f64> {
+    let spread = if stream == 0 { 0.0 } else { SHARE_SPREAD };
+    let mut random = Random::new(search.seed(stream));
+    (0..search.network.num_routes).map(|_| 1.0 + spread * (2.0 * random.uniform() - 1.0)).collect()
+}
