@@ -6,8 +6,9 @@
 //! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
 //! (`improve`); if the effort allows, a race of several cuts of the sectors (`population`); from the winner, ruin (`ruin`) and
 //! recreate (`recreate`) under annealing (`anneal`), or, with more effort, children of the best plans (`recombine`), annealed
-//! likewise; all that for the longest route, then annealing for the total with the longest route as a limit. Threads share their best plans now and then (`cooperate`). A time too short for all that goes into a rough
-//! plan (`rough`): sectors toured along strips, smoothed without neighbour lists (`smooth`) and balanced.
+//! likewise; all that for the longest route, then annealing for the total with the longest route as a limit. Threads share
+//! their best plans now and then (`cooperate`). A time too short for all that goes into a rough plan (`rough`): sectors toured
+//! along strips, smoothed without neighbour lists (`smooth`) and balanced.
 //!
 //! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
 //! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
@@ -115,7 +116,7 @@ const TOTAL_HEAT: (f64, f64) = (3e-3, 3e-6);
 pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);
-    if options.start.is_none() {
+    if options.start.is_none() && options.clock.is_some() {
         let rough = RoughPlan::new(&network);
         // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
         if budget.share(0) * NEIGHBOURS_COST > 1.0 {

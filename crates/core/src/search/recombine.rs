@@ -94,27 +94,27 @@ fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], 
 
 /// `base` with those components of `donor` that make it better by `objective`; `None` if there are none.
 pub(super) fn blend(network: &Network, base: &State, donor: &State, objective: &Objective) -> Option<State> {
-    let mut links = links(network, base);
-    let new_links = self::links(network, donor);
-    let parts = differing_parts(network, &links, &new_links);
+    let mut kept = links(network, base);
+    let offered = links(network, donor);
+    let parts = differing_parts(network, &kept, &offered);
     let mut value = objective.value(base);
     let mut is_better = false;
     let mut walk = Walk::new(network);
     for part in parts.iter().take(MAX_PARTS) {
-        let old_links: Vec<[Link; 2]> = part.iter().map(|&visit| links[visit as usize]).collect();
+        let replaced: Vec<[Link; 2]> = part.iter().map(|&visit| kept[visit as usize]).collect();
         for &visit in part {
-            links[visit as usize] = new_links[visit as usize];
+            kept[visit as usize] = offered[visit as usize];
         }
-        let new_value = walk.follow(network, &links).map(|costs| objective.value_of(costs)).unwrap_or(f64::INFINITY);
+        let new_value = walk.follow(network, &kept).map_or(f64::INFINITY, |costs| objective.value_of(costs));
         if new_value < value {
             (value, is_better) = (new_value, true);
         } else {
-            for (&visit, &old) in part.iter().zip(&old_links) {
-                links[visit as usize] = old;
+            for (&visit, &old) in part.iter().zip(&replaced) {
+                kept[visit as usize] = old;
             }
         }
     }
-    is_better.then(|| State::new(network, &walk.routes(network, &links)))
+    is_better.then(|| State::new(network, &walk.routes(network, &kept)))
 }
 
 /// What a visit is joined to: another visit, or the depot, which is `num_visits`.
