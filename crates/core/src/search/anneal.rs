@@ -34,6 +34,11 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
+    /// Temperatures at the beginning and at the end as shares of `scale`.
+    pub fn scaled(begin: f64, end: f64, (hot, cold): (f64, f64), scale: f64) -> Self {
+        Self { begin, end, hot: hot * scale, cold: cold * scale }
+    }
+
     fn temperature(&self, share: f64) -> f64 {
         let progress = ((share - self.begin) / (self.end - self.begin)).clamp(0.0, 1.0);
         self.hot * libm::pow(self.cold / self.hot, progress)

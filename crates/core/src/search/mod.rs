@@ -216,9 +216,8 @@ impl Search<'_> {
     }
 
     /// From now to `end`.
-    fn schedule(&self, chain: &Chain<SharedAirspace>, end: f64, (hot, cold): (f64, f64)) -> Schedule {
-        let scale = chain.best.max_route_cost();
-        Schedule { begin: self.budget.share(chain.num_iterations), end, hot: hot * scale, cold: cold * scale }
+    fn schedule(&self, chain: &Chain<SharedAirspace>, end: f64, heat: (f64, f64)) -> Schedule {
+        Schedule::scaled(self.budget.share(chain.num_iterations), end, heat, chain.best.max_route_cost())
     }
 }
 

@@ -179,9 +179,8 @@ fn sort(chains: &mut [Chain<SharedAirspace>]) {
 }
 
 /// Anneals between two shares of the effort, with temperatures relative to the longest route.
-fn anneal(search: &Search<'_>, chain: &mut Chain<SharedAirspace>, (begin, end): (f64, f64), (hot, cold): (f64, f64)) {
-    let scale = chain.best.max_route_cost();
-    let schedule = Schedule { begin, end, hot: hot * scale, cold: cold * scale };
+fn anneal(search: &Search<'_>, chain: &mut Chain<SharedAirspace>, (begin, end): (f64, f64), heat: (f64, f64)) {
+    let schedule = Schedule::scaled(begin, end, heat, chain.best.max_route_cost());
     chain.anneal(search.network, search.budget, &schedule, end, 0.0);
 }
 

@@ -64,9 +64,8 @@ pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<u
     to_indices(chain.best.routes(network))
 }
 
-fn anneal(network: &Network, budget: &Budget<'_>, chain: &mut Chain<Hulls<'_>>, end: f64, (hot, cold): (f64, f64)) {
-    let scale = chain.best.max_route_cost();
-    let schedule = Schedule { begin: budget.share(chain.num_iterations), end, hot: hot * scale, cold: cold * scale };
+fn anneal(network: &Network, budget: &Budget<'_>, chain: &mut Chain<Hulls<'_>>, end: f64, heat: (f64, f64)) {
+    let schedule = Schedule::scaled(budget.share(chain.num_iterations), end, heat, chain.best.max_route_cost());
     chain.anneal(network, budget, &schedule, end, 0.0);
 }
 
