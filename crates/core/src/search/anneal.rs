@@ -82,7 +82,7 @@ impl<A: Airspace> Chain<A> {
             current_value: value,
             trial: state,
             ruin: Ruin::default(),
-            recreate: Recreate::default(),
+            recreate: Recreate::new(network),
             airspace,
             touched: Touched::default(),
             since_best: Difference::new(network),

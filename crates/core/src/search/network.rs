@@ -26,7 +26,7 @@ pub(crate) struct Neighbour {
 pub(crate) struct Network {
     pub num_visits: usize,
     pub num_routes: usize,
-    /// Positions of all nodes.
+    /// Positions of all nodes, in seconds of flight.
     pub points: Vec<Point>,
     /// Time on station of all nodes; 0 for the depot copies.
     pub services: Vec<f64>,
@@ -34,8 +34,8 @@ pub(crate) struct Network {
     pub depot_legs: Vec<f64>,
     /// Longest time a drone can be under way.
     pub max_route_cost: f64,
-    pace: f64,
-    stop: f64,
+    /// Fixed time per leg.
+    pub stop: f64,
     neighbours: Vec<Neighbour>,
     num_neighbours: usize,
 }
@@ -46,8 +46,10 @@ impl Network {
         let vehicle_type = problem.vehicle_type();
         let (num_visits, num_routes) = (problem.num_visits(), vehicle_type.num_available.min(problem.num_visits()));
         let depot = problem.depot().position;
-        let mut points: Vec<Point> = problem.visits().iter().map(|visit| visit.position).collect();
-        points.resize(num_visits + num_routes, depot);
+        let pace = 1.0 / vehicle_type.speed;
+        let scaled = |place: Point| Point::new(place.x * pace, place.y * pace);
+        let mut points: Vec<Point> = problem.visits().iter().map(|visit| scaled(visit.position)).collect();
+        points.resize(num_visits + num_routes, scaled(depot));
         let mut services: Vec<f64> = problem.visits().iter().map(|visit| visit.service_duration).collect();
         services.resize(num_visits + num_routes, 0.0);
         let mut network = Self {
@@ -57,12 +59,13 @@ impl Network {
             services,
             depot_legs: Vec::new(),
             max_route_cost: vehicle_type.max_duration,
-            pace: 1.0 / vehicle_type.speed,
             stop: vehicle_type.leg_stop_duration,
             neighbours: Vec::new(),
             num_neighbours: 0,
         };
-        network.depot_legs = (0..num_visits).map(|visit| network.leg_between(depot, network.points[visit])).collect();
+        network.depot_legs = (0..num_visits)
+            .map(|visit| network.leg_between(network.points[num_visits], network.points[visit]))
+            .collect();
         network
     }
 
@@ -74,7 +77,7 @@ impl Network {
 
     #[inline]
     fn leg_of_length(&self, length: f64) -> f64 {
-        if length > 0.0 { length * self.pace + self.stop } else { 0.0 }
+        if length > 0.0 { length + self.stop } else { 0.0 }
     }
 
     /// Cost of the leg between two nodes.

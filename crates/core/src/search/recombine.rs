@@ -14,7 +14,7 @@ use super::airspace::SharedAirspace;
 use super::construct::pseudo_angle;
 use super::network::Network;
 use super::recreate::{Objective, Recreate};
-use super::state::{ABSENT, Node, RouteCosts, State, Touched};
+use super::state::{ABSENT, AFTER, BEFORE, Node, RouteCosts, State, Touched};
 use crate::random::Random;
 
 /// Runs of routes tried for one child.
@@ -79,7 +79,7 @@ fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], 
         (0..network.num_visits as u32).filter(|&visit| child.nodes[visit as usize].route == ABSENT).collect();
     let target = keeper.max_route_cost().min(giver.max_route_cost());
     let objective = Objective { target, ..Objective::longest_route(network, keeper) };
-    Recreate::default().insert(
+    Recreate::new(network).insert(
         network,
         &mut child,
         &missing,
@@ -128,8 +128,8 @@ struct Link {
 fn links(network: &Network, state: &State) -> Vec<[Link; 2]> {
     let depot = network.num_visits as u32;
     let both = |node: &Node| {
-        let before = Link { leg: state.nodes[node.previous as usize].leg_after, to: node.previous.min(depot) };
-        [before, Link { leg: node.leg_after, to: node.next.min(depot) }]
+        let before = Link { leg: node.legs[BEFORE], to: node.previous.min(depot) };
+        [before, Link { leg: node.legs[AFTER], to: node.next.min(depot) }]
     };
     state.nodes[..network.num_visits].iter().map(both).collect()
 }

@@ -6,14 +6,15 @@
 
 use super::airspace::Airspace;
 use super::network::Network;
-use super::state::{ABSENT, RouteCosts, State, Touched};
+use super::state::{AFTER, BEFORE, Node, Place, RouteCosts, State, Touched};
 use crate::random::Random;
 use std::cmp::Ordering;
 
 /// One place in 2⁸ is passed over, so that a step can leave the greedy path.
-const PLACE_BLINK_BITS: u32 = 8;
-/// One route in 2⁶ is passed over whole, without which a visit would never leave a short route for an empty one.
-const ROUTE_BLINK_BITS: u32 = 6;
+const PLACE_BLINK: u64 = 1 << (u64::BITS - 8);
+/// One route in this number times its mean number of visits is passed over whole, without which a visit would never leave a
+/// short route for an empty one. On long routes most visits have no other route near them, and would be put far away.
+const VISITS_PER_ROUTE_BLINK: u64 = 6;
 /// Routes at whose ends a visit is tried, beside those near it: a random run of them where there are more.
 const MAX_DEPOT_ENDS: u32 = 16;
 /// What a unit of overflow over the target costs, beside the added length.
@@ -93,19 +94,19 @@ impl Rank {
 }
 
 /// Buffers of the insertion.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Recreate {
     keyed: Vec<(f64, u32)>,
-}
-
-struct Place {
-    after: u32,
-    leg_in: f64,
-    leg_out: f64,
-    added: f64,
+    /// Hashes below this pass over a whole route.
+    route_blink: u64,
 }
 
 impl Recreate {
+    pub fn new(network: &Network) -> Self {
+        let mean_size = network.num_visits.div_ceil(network.num_routes) as u64;
+        Self { keyed: Vec::new(), route_blink: u64::MAX / (VISITS_PER_ROUTE_BLINK * mean_size) }
+    }
+
     /// Inserts the `removed` visits. Returns false, with visits still absent, once the result is sure to exceed `threshold`.
     #[allow(clippy::too_many_arguments)]
     pub fn insert(
@@ -120,12 +121,13 @@ impl Recreate {
         touched: &mut Touched,
     ) -> bool {
         self.order(network, removed, random);
-        let mut longest: f64 = 0.0;
+        let mut longest = state.max_route_cost();
         for &(_, visit) in &self.keyed {
-            let Some(place) = cheapest_place(network, state, visit, objective, airspace, random.bits()) else {
+            let blinks = Blinks { salt: random.bits(), route_limit: self.route_blink };
+            let Some(place) = cheapest_place(network, state, visit, objective, airspace, &blinks) else {
                 return false;
             };
-            state.insert(visit, place.after, place.leg_in, place.leg_out, place.added, touched);
+            state.insert(network, visit, &place, touched);
             let route = state.nodes[visit as usize].route;
             airspace.assign(visit, route);
             longest = longest.max(state.route_costs[route as usize]);
@@ -160,81 +162,151 @@ impl Recreate {
 }
 
 /// Finds where `visit` costs least; nowhere if every place tried would break the cap.
-///
-/// A place is tried from both of its ends: `salt` decides for a place, not for a trial, whether it is passed over.
 fn cheapest_place(
     network: &Network,
     state: &State,
     visit: u32,
     objective: &Objective,
     airspace: &mut impl Airspace,
-    salt: u64,
+    blinks: &Blinks,
 ) -> Option<Place> {
-    let service = network.services[visit as usize];
-    let mut best_price = f64::INFINITY;
-    let mut best = Place { after: ABSENT, leg_in: 0.0, leg_out: 0.0, added: 0.0 };
-    let mut consider = |best_price: &mut f64, after: u32, leg_in: f64, leg_out: f64, route: u32, leg_removed: f64| {
-        let added = leg_in + leg_out - leg_removed + service;
-        if added >= *best_price {
-            return;
-        }
-        let cost = state.route_costs[route as usize] + added;
-        let overflow = cost - objective.target;
-        let price = if overflow > 0.0 { added + OVERFLOW_PRICE * overflow.min(added) } else { added };
-        if price < *best_price
-            && cost <= objective.cap
-            && !is_blink(after, salt, PLACE_BLINK_BITS)
-            && !is_blink(!route, salt, ROUTE_BLINK_BITS)
-            && airspace.admits(visit, route)
-        {
-            *best_price = price;
-            best = Place { after, leg_in, leg_out, added };
-        }
-    };
+    let insertion = Insertion::new(network, visit, objective);
+    let mut cheapest = Cheapest { state, visit, objective, airspace, blinks, price: f64::INFINITY, place: None };
+    let last_route = state.route_costs.len() - 1;
     let mut reach = 0.0;
     for neighbour in network.neighbours(visit) {
-        let (leg, near) = (neighbour.leg, neighbour.node);
+        let (leg, node) = (neighbour.leg, &state.nodes[neighbour.node as usize]);
         reach = leg;
-        let node = state.nodes[near as usize];
-        if node.route == ABSENT {
+        // A place whose other end is nearer was tried from there, so the other leg is at least as long.
+        if 2.0 * leg + insertion.service - greater(node.legs[BEFORE], node.legs[AFTER]) >= cheapest.price {
             continue;
         }
-        // A place whose other end is nearer than `near` was tried from there, so the other leg is at least as long.
-        let least = 2.0 * leg + service;
-        if least - node.leg_after < best_price {
-            let leg_out = network.leg(visit, node.next);
-            consider(&mut best_price, near, leg, leg_out, node.route, node.leg_after);
-        }
-        let leg_removed = state.nodes[node.previous as usize].leg_after;
-        if least - leg_removed < best_price {
-            let leg_in = network.leg(node.previous, visit);
-            consider(&mut best_price, node.previous, leg_in, leg, node.route, leg_removed);
+        // An absent neighbour has a route out of range, and then a price without bound.
+        let route = (node.route as usize).min(last_route);
+        let offers = insertion.offers_beside(node, leg, state.route_costs[route]);
+        if lesser(offers.prices[BEFORE], offers.prices[AFTER]) < cheapest.price {
+            cheapest.consider(neighbour.node, leg, &offers);
         }
     }
     // Beside a near neighbour the ends of the routes were tried too; others are at least `reach` away.
-    let depot_leg = network.depot_legs[visit as usize];
-    let least = depot_leg + reach + service;
+    let leg = network.depot_legs[visit as usize];
+    let least = leg + reach + insertion.service;
     let num_routes = network.num_routes as u32;
-    let first = if num_routes > MAX_DEPOT_ENDS { (salt >> 32) as u32 % num_routes } else { 0 };
+    let first = if num_routes > MAX_DEPOT_ENDS { (blinks.salt >> 32) as u32 % num_routes } else { 0 };
     for offset in 0..num_routes {
-        if offset >= MAX_DEPOT_ENDS && best_price.is_finite() {
+        if offset >= MAX_DEPOT_ENDS && cheapest.place.is_some() {
             break;
         }
         let route = (first + offset) % num_routes;
         let depot = network.num_visits as u32 + route;
-        let node = state.nodes[depot as usize];
-        if least - node.leg_after < best_price || node.next == depot {
-            consider(&mut best_price, depot, depot_leg, network.leg(visit, node.next), route, node.leg_after);
-        }
-        let leg_removed = state.nodes[node.previous as usize].leg_after;
-        if least - leg_removed < best_price {
-            consider(&mut best_price, node.previous, network.leg(node.previous, visit), depot_leg, route, leg_removed);
+        let node = &state.nodes[depot as usize];
+        let is_empty = node.next == depot;
+        if least - greater(node.legs[BEFORE], node.legs[AFTER]) < cheapest.price || is_empty {
+            cheapest.consider(depot, leg, &insertion.offers_beside(node, leg, state.route_costs[route as usize]));
         }
     }
-    (best.after != ABSENT).then_some(best)
+    cheapest.place
 }
 
-/// Whether a place or route is passed over this time: whether the top bits of a multiplicative hash are 0.
-fn is_blink(place: u32, salt: u64, num_bits: u32) -> bool {
-    (salt ^ u64::from(place)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (u64::BITS - num_bits) == 0
+/// All that the prices of places for one visit have in common.
+struct Insertion {
+    x: f64,
+    y: f64,
+    service: f64,
+    stop: f64,
+    target: f64,
+}
+
+/// The places before and after one node.
+struct Offers {
+    /// Legs between the visit and the other end of the place.
+    other_legs: [f64; 2],
+    added: [f64; 2],
+    prices: [f64; 2],
+}
+
+impl Insertion {
+    fn new(network: &Network, visit: u32, objective: &Objective) -> Self {
+        let (point, service) = (network.points[visit as usize], network.services[visit as usize]);
+        Self { x: point.x, y: point.y, service, stop: network.stop, target: objective.target }
+    }
+
+    /// The places beside `node`, which is `leg` away. Most of the time of a search is spent here: both places are priced at
+    /// once, without a branch, so that one instruction does for both.
+    #[inline(always)]
+    fn offers_beside(&self, node: &Node, leg: f64, route_cost: f64) -> Offers {
+        let mut offers = Offers { other_legs: [0.0; 2], added: [0.0; 2], prices: [0.0; 2] };
+        let (excess, leg) = (route_cost - self.target, leg + self.service);
+        for side in [BEFORE, AFTER] {
+            let (dx, dy) = (node.xs[side] - self.x, node.ys[side] - self.y);
+            let length = (dx * dx + dy * dy).sqrt();
+            let other_leg = if length > 0.0 { length + self.stop } else { 0.0 };
+            let added = leg + other_leg - node.legs[side];
+            let overflow = lesser(greater(excess + added, 0.0), added);
+            offers.other_legs[side] = other_leg;
+            offers.added[side] = added;
+            offers.prices[side] = added + OVERFLOW_PRICE * overflow;
+        }
+        offers
+    }
+}
+
+/// Unlike `f64::min` one instruction, because it does not look for what is not a number.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// Unlike `f64::max` one instruction.
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The cheapest place so far.
+struct Cheapest<'a, A> {
+    state: &'a State,
+    visit: u32,
+    objective: &'a Objective,
+    airspace: &'a mut A,
+    blinks: &'a Blinks,
+    price: f64,
+    place: Option<Place>,
+}
+
+impl<A: Airspace> Cheapest<'_, A> {
+    /// Takes what `near`, which is `leg` away, offers, if it is cheaper and allowed. Kept apart, because it is seldom called.
+    #[inline(never)]
+    fn consider(&mut self, near: u32, leg: f64, offers: &Offers) {
+        let node = &self.state.nodes[near as usize];
+        for side in [AFTER, BEFORE] {
+            let (added, other_leg) = (offers.added[side], offers.other_legs[side]);
+            let place = if side == AFTER {
+                Place { after: near, leg_in: leg, leg_out: other_leg, added }
+            } else {
+                Place { after: node.previous, leg_in: other_leg, leg_out: leg, added }
+            };
+            if offers.prices[side] < self.price
+                && self.state.route_costs[node.route as usize] + added <= self.objective.cap
+                && !self.blinks.pass_over(place.after, node.route)
+                && self.airspace.admits(self.visit, node.route)
+            {
+                (self.price, self.place) = (offers.prices[side], Some(place));
+            }
+        }
+    }
+}
+
+/// Which places and routes are passed over for one visit: decided for a place, which is tried from both of its ends, not for a
+/// trial.
+struct Blinks {
+    salt: u64,
+    route_limit: u64,
+}
+
+impl Blinks {
+    fn pass_over(&self, after: u32, route: u32) -> bool {
+        let hash = |index: u32| (self.salt ^ u64::from(index)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        hash(after) < PLACE_BLINK || hash(!route) < self.route_limit
+    }
 }

@@ -9,16 +9,36 @@ use super::network::Network;
 /// Route of a visit that no route makes at the moment.
 pub(crate) const ABSENT: u32 = u32::MAX;
 
-/// A visit or a depot copy.
+/// Legs of an absent visit: no place beside it is ever cheap.
+const NO_LEGS: [f64; 2] = [f64::NEG_INFINITY; 2];
+
+/// Where a visit can be put.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub after: u32,
+    pub leg_in: f64,
+    pub leg_out: f64,
+    /// What the plan costs more with it.
+    pub added: f64,
+}
+
+/// A visit or a depot copy: all that the price of a place beside it depends on, in one line of the cache.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
-    /// Cost of the leg to `next`.
-    pub leg_after: f64,
+    /// Cost of the legs from `previous` and to `next`.
+    pub legs: [f64; 2],
+    /// Where `previous` and `next` are.
+    pub xs: [f64; 2],
+    pub ys: [f64; 2],
     pub previous: u32,
     pub next: u32,
     /// [`ABSENT`] while removed.
     pub route: u32,
 }
+
+/// Index of what lies before or after a node, in its pairs.
+pub(crate) const BEFORE: usize = 0;
+pub(crate) const AFTER: usize = 1;
 
 /// A solution under change.
 #[derive(Clone, Debug)]
@@ -105,9 +125,11 @@ impl State {
     /// The state of the given routes; visits not in them are absent.
     pub fn new(network: &Network, routes: &[Vec<u32>]) -> Self {
         let num_nodes = network.num_visits + network.num_routes;
-        let absent = Node { leg_after: 0.0, previous: ABSENT, next: ABSENT, route: ABSENT };
+        // An absent visit leads to itself, so that every link is one to a node.
+        let absent =
+            |node| Node { legs: NO_LEGS, xs: [0.0; 2], ys: [0.0; 2], previous: node, next: node, route: ABSENT };
         let mut state = Self {
-            nodes: vec![absent; num_nodes],
+            nodes: (0..num_nodes as u32).map(absent).collect(),
             route_costs: vec![0.0; network.num_routes],
             route_sizes: vec![0; network.num_routes],
             total: 0.0,
@@ -126,9 +148,7 @@ impl State {
         for &node in visits.iter().chain([&depot]) {
             let leg = network.leg(last, node);
             cost += leg + network.services[node as usize];
-            self.nodes[last as usize].next = node;
-            self.nodes[last as usize].leg_after = leg;
-            self.nodes[node as usize].previous = last;
+            self.link(network, last, node, leg);
             self.nodes[node as usize].route = route as u32;
             last = node;
         }
@@ -173,15 +193,26 @@ impl State {
         longest as u32
     }
 
-    /// Puts an absent visit between `after` and its successor, at the extra cost `added` known to the caller.
+    /// Makes `next` follow `previous`.
     #[inline]
-    pub fn insert(&mut self, visit: u32, after: u32, leg_in: f64, leg_out: f64, added: f64, touched: &mut Touched) {
+    fn link(&mut self, network: &Network, previous: u32, next: u32, leg: f64) {
+        let (from, to) = (network.points[previous as usize], network.points[next as usize]);
+        let node = &mut self.nodes[previous as usize];
+        node.next = next;
+        (node.legs[AFTER], node.xs[AFTER], node.ys[AFTER]) = (leg, to.x, to.y);
+        let node = &mut self.nodes[next as usize];
+        node.previous = previous;
+        (node.legs[BEFORE], node.xs[BEFORE], node.ys[BEFORE]) = (leg, from.x, from.y);
+    }
+
+    /// Puts an absent visit at a place.
+    #[inline]
+    pub fn insert(&mut self, network: &Network, visit: u32, place: &Place, touched: &mut Touched) {
+        let &Place { after, leg_in, leg_out, added } = place;
         let Node { next, route, .. } = self.nodes[after as usize];
-        self.nodes[visit as usize] = Node { leg_after: leg_out, previous: after, next, route };
-        let before = &mut self.nodes[after as usize];
-        before.next = visit;
-        before.leg_after = leg_in;
-        self.nodes[next as usize].previous = visit;
+        self.link(network, after, visit, leg_in);
+        self.link(network, visit, next, leg_out);
+        self.nodes[visit as usize].route = route;
         self.route_costs[route as usize] += added;
         self.route_sizes[route as usize] += 1;
         self.total += added;
@@ -199,21 +230,18 @@ impl State {
         touched: &mut Touched,
     ) {
         let Node { previous, route, .. } = self.nodes[first as usize];
-        let mut saved = self.nodes[previous as usize].leg_after;
+        let mut saved = self.nodes[previous as usize].legs[AFTER];
         let mut visit = first;
         for _ in 0..count {
             let node = &mut self.nodes[visit as usize];
-            node.route = ABSENT;
-            saved += node.leg_after + network.services[visit as usize];
+            saved += node.legs[AFTER] + network.services[visit as usize];
             removed.push(visit);
             touched.nodes.push(visit);
+            (node.route, node.legs) = (ABSENT, NO_LEGS);
             visit = node.next;
         }
         let leg = network.leg(previous, visit);
-        let before = &mut self.nodes[previous as usize];
-        before.next = visit;
-        before.leg_after = leg;
-        self.nodes[visit as usize].previous = previous;
+        self.link(network, previous, visit, leg);
         self.route_costs[route as usize] -= saved - leg;
         self.route_sizes[route as usize] -= count as u32;
         self.total -= saved - leg;
