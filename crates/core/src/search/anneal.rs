@@ -6,7 +6,7 @@
 //! copying what it touched, so that its cost does not depend on the size of the plan.
 
 use super::airspace::Airspace;
-use super::budget::{Budget, Progress};
+use super::budget::Effort;
 use super::network::Network;
 use super::recreate::{Objective, Rank, Recreate};
 use super::ruin::Ruin;
@@ -19,8 +19,6 @@ const LONGEST_SHARE: f64 = 0.5;
 const MAX_SEED_DRAWS: usize = 64;
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: u64 = 8;
-/// Steps between two reports.
-const STEPS_PER_REPORT: u64 = 2048;
 
 /// A temperature that falls geometrically between two shares of the effort.
 #[derive(Clone, Copy, Debug)]
@@ -50,11 +48,7 @@ pub(crate) struct Chain<A> {
     /// The best plan found.
     pub best: State,
     pub best_rank: Rank,
-    /// Steps made.
-    pub num_iterations: u64,
     pub objective: Objective,
-    /// Longest route of the best plan beside this chain's, so that progress tells of the best of all.
-    pub longest_elsewhere: f64,
     random: Random,
     current: State,
     current_value: f64,
@@ -74,9 +68,7 @@ impl<A: Airspace> Chain<A> {
         Self {
             best: state.clone(),
             best_rank: rank,
-            num_iterations: 0,
             objective,
-            longest_elsewhere: f64::INFINITY,
             random: Random::new(seed),
             current: state.clone(),
             current_value: value,
@@ -109,20 +101,15 @@ impl<A: Airspace> Chain<A> {
     }
 
     /// Anneals until the share `until` of the effort is used, or no route is longer than `floor`, which none can undercut.
-    pub fn anneal(&mut self, network: &Network, budget: &Budget<'_>, schedule: &Schedule, until: f64, floor: f64) {
-        let mut share = budget.share(self.num_iterations);
+    pub fn anneal(&mut self, network: &Network, effort: &mut Effort<'_>, schedule: &Schedule, until: f64, floor: f64) {
+        let mut share = effort.share();
         while share < until && self.best.max_route_cost() > floor {
             let temperature = schedule.temperature(share);
             for _ in 0..STEPS_PER_LOOK {
                 self.step(network, temperature);
             }
-            self.num_iterations += STEPS_PER_LOOK;
-            if self.num_iterations.is_multiple_of(STEPS_PER_REPORT) {
-                let num_iterations = self.num_iterations;
-                let max_route_cost = self.best.max_route_cost().min(self.longest_elsewhere);
-                budget.report(&Progress { max_route_cost, num_iterations, share });
-            }
-            share = budget.share(self.num_iterations);
+            effort.add(STEPS_PER_LOOK, self.best.max_route_cost());
+            share = effort.share();
         }
     }
 

@@ -55,9 +55,41 @@ impl<'a> Budget<'a> {
         of_iterations.max(of_time)
     }
 
-    pub fn report(&self, progress: &Progress) {
+    fn report(&self, progress: &Progress) {
         if self.watch.is_some_and(|watch| watch(progress).is_break()) {
             self.is_stopped.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+/// Steps between two reports.
+const STEPS_PER_REPORT: u64 = 2048;
+
+/// What one thread has used of a budget, on whichever of its plans.
+pub(crate) struct Effort<'a> {
+    budget: &'a Budget<'a>,
+    /// Steps made.
+    pub num_iterations: u64,
+    /// Longest route of the best plan beside the one at work, so that progress tells of the best of all.
+    pub longest_elsewhere: f64,
+}
+
+impl<'a> Effort<'a> {
+    pub fn new(budget: &'a Budget<'a>) -> Self {
+        Self { budget, num_iterations: 0, longest_elsewhere: f64::INFINITY }
+    }
+
+    /// Share of the effort used.
+    pub fn share(&self) -> f64 {
+        self.budget.share(self.num_iterations)
+    }
+
+    /// Counts steps, after which the longest route of the plan at work costs `max_route_cost`; tells the watch now and then.
+    pub fn add(&mut self, num_steps: u64, max_route_cost: f64) {
+        self.num_iterations += num_steps;
+        if self.num_iterations.is_multiple_of(STEPS_PER_REPORT) {
+            let max_route_cost = max_route_cost.min(self.longest_elsewhere);
+            self.budget.report(&Progress { max_route_cost, num_iterations: self.num_iterations, share: self.share() });
         }
     }
 }

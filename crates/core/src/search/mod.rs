@@ -32,7 +32,7 @@ use crate::problem::Problem;
 pub(crate) use airspace::Airspace;
 use airspace::SharedAirspace;
 pub(crate) use anneal::{Chain, Schedule};
-pub(crate) use budget::Budget;
+pub(crate) use budget::{Budget, Effort};
 pub use budget::{Clock, Progress, Watch};
 use construct::Sweep;
 pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap, pseudo_angle};
@@ -125,7 +125,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     }
     network.find_neighbours();
     let search = Search { network: &network, budget: &budget, options, meeting: Meeting::new(options.num_threads) };
-    let mut chains: Vec<Chain<SharedAirspace>> = std::thread::scope(|scope| {
+    let mut runs: Vec<(Chain<SharedAirspace>, u64)> = std::thread::scope(|scope| {
         let others: Vec<_> = (1..options.num_threads)
             .map(|thread| {
                 scope.spawn({
@@ -139,9 +139,9 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
             others.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         std::iter::once(first).chain(rest).collect()
     });
-    let num_iterations = chains[0].num_iterations;
-    chains.sort_by(|a, b| a.best_rank.compare(&b.best_rank));
-    Outcome { routes: to_indices(chains[0].best.routes(&network)), num_iterations }
+    let num_iterations = runs[0].1;
+    runs.sort_by(|a, b| a.0.best_rank.compare(&b.0.best_rank));
+    Outcome { routes: to_indices(runs[0].0.best.routes(&network)), num_iterations }
 }
 
 /// What the threads of one search share.
@@ -153,28 +153,31 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// One thread's search: the longest route, by several plans if the effort allows, then the total of the best.
-    fn run(&self, thread: usize) -> Chain<SharedAirspace> {
+    /// One thread's search: the longest route, by several plans if the effort allows, then the total of the best. Returns the
+    /// plan and the number of steps.
+    fn run(&self, thread: usize) -> (Chain<SharedAirspace>, u64) {
+        let mut effort = Effort::new(self.budget);
         let mut population = match (self.options.start, self.options.goal) {
             (Some(routes), _) => Population::single(self.chain_from(&to_nodes(routes), thread as u64)),
-            (None, Goal::Max) => Population::race(self, thread),
+            (None, Goal::Max) => Population::race(self, &mut effort, thread),
             (None, Goal::Total) => Population::single(self.fewest_routes(thread)),
         };
         let floor = self.network.farthest_visit_bound() * (1.0 + 1e-12);
         let max_end = if population.best().best.max_route_cost() <= self.goal_cap() { 0.0 } else { MAX_END };
-        let schedule = self.schedule(population.best(), max_end, MAX_HEAT);
+        let schedule = Schedule::scaled(effort.share(), max_end, MAX_HEAT, population.best().best.max_route_cost());
         // Every thread comes to every meeting, also one that has nothing left to do, or the others would wait for ever.
         for until in MEETINGS.into_iter().chain([MAX_END]) {
-            population.improve(self, &schedule, until.min(max_end), floor);
+            population.improve(self, &mut effort, &schedule, until.min(max_end), floor);
             if let Some(best) = self.meeting.best_of_all(thread, population.best()) {
                 population.welcome(&best);
             }
         }
         let mut chain = population.into_best();
         chain.restart(self.total_objective(&chain.best));
-        let schedule = self.schedule(&chain, 1.0, TOTAL_HEAT);
-        chain.anneal(self.network, self.budget, &schedule, 1.0, 0.0);
-        chain
+        let schedule = Schedule::scaled(effort.share(), 1.0, TOTAL_HEAT, chain.best.max_route_cost());
+        effort.longest_elsewhere = f64::INFINITY;
+        chain.anneal(self.network, &mut effort, &schedule, 1.0, 0.0);
+        (chain, effort.num_iterations)
     }
 
     fn seed(&self, stream: u64) -> u64 {
@@ -213,11 +216,6 @@ impl Search<'_> {
         // Taking a visit out and putting it back changes the last bits of a route's cost.
         let longest = state.max_route_cost() * (1.0 + self.options.slack) * (1.0 + 1e-12);
         Objective::total_within(longest.max(self.goal_cap()))
-    }
-
-    /// From now to `end`.
-    fn schedule(&self, chain: &Chain<SharedAirspace>, end: f64, heat: (f64, f64)) -> Schedule {
-        Schedule::scaled(self.budget.share(chain.num_iterations), end, heat, chain.best.max_route_cost())
     }
 }
 

@@ -7,6 +7,7 @@
 
 use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
+use super::budget::Effort;
 use super::construct::Sweep;
 use super::recombine::{blend, cross};
 use super::recreate::Objective;
@@ -56,7 +57,7 @@ impl Population {
 
     /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until those are left that
     /// can have enough children: one, if there is no effort for children.
-    pub fn race(search: &Search<'_>, thread: usize) -> Self {
+    pub fn race(search: &Search<'_>, effort: &mut Effort<'_>, thread: usize) -> Self {
         let sweep = Sweep::new(search.network);
         let start = |index: usize| {
             let stream = (index * search.options.num_threads + thread) as u64;
@@ -64,49 +65,45 @@ impl Population {
             improve_routes(search.network, search.budget, &mut routes);
             search.chain_from(&routes, stream)
         };
-        let begin = search.budget.share(0);
+        let begin = effort.share();
         let mut chains = vec![start(0)];
         let start_steps = START_STEPS_PER_VISIT * search.network.num_visits as f64;
         // Steps a visit that the whole effort is worth.
-        let effort = START_STEPS_PER_VISIT / search.budget.share_of_work(start_steps, begin);
-        let num_starts = ((effort / RACE_STEPS_PER_VISIT) as usize).clamp(1, MAX_STARTS);
+        let steps_per_visit = START_STEPS_PER_VISIT / search.budget.share_of_work(start_steps, begin);
+        let num_starts = ((steps_per_visit / RACE_STEPS_PER_VISIT) as usize).clamp(1, MAX_STARTS);
         chains.extend((1..num_starts).map(start));
-        let least_effort =
+        let least_steps_per_visit =
             CHILDREN_STEPS_PER_VISIT.0.max(CHILDREN_STEPS_PER_VISIT.1 * search.network.num_visits as f64);
-        let num_parents = if effort < least_effort || search.network.num_routes == 1 {
+        let num_parents = if steps_per_visit < least_steps_per_visit || search.network.num_routes == 1 {
             1
         } else {
-            ((effort / STEPS_PER_VISIT_AND_PARENT) as usize).clamp(MIN_PARENTS, MAX_PARENTS)
+            ((steps_per_visit / STEPS_PER_VISIT_AND_PARENT) as usize).clamp(MIN_PARENTS, MAX_PARENTS)
         };
         let random = Random::new(search.seed(u64::MAX - thread as u64));
-        let child_share = (CHILD_STEPS_PER_VISIT / effort).max(MIN_CHILD_SHARE);
+        let child_share = (CHILD_STEPS_PER_VISIT / steps_per_visit).max(MIN_CHILD_SHARE);
         let mut population = Self { chains, random, child_share };
         let num_rounds = (num_starts as f64 / num_parents as f64).log2().ceil() as usize;
         // Also starts that are all to be parents must first be improved.
         for rounds_left in (1..=num_rounds.max(usize::from(num_starts > 1))).rev() {
-            population.run_round(search, rounds_left);
+            population.run_round(search, effort, rounds_left);
             population.chains.truncate(population.chains.len().div_ceil(2).max(num_parents));
         }
         population
     }
 
     /// Anneals all plans for the same share of what is left for the race.
-    fn run_round(&mut self, search: &Search<'_>, rounds_left: usize) {
-        let mut num_iterations = self.chains[0].num_iterations;
-        let begin = search.budget.share(num_iterations);
+    fn run_round(&mut self, search: &Search<'_>, effort: &mut Effort<'_>, rounds_left: usize) {
+        let begin = effort.share();
         let slice = (RACE_END - begin).max(0.0) / rounds_left as f64 / self.chains.len() as f64;
-        let mut longest = self.chains.iter().map(|chain| chain.best.max_route_cost()).fold(f64::INFINITY, f64::min);
+        effort.longest_elsewhere =
+            self.chains.iter().map(|chain| chain.best.max_route_cost()).fold(f64::INFINITY, f64::min);
         for (index, chain) in self.chains.iter_mut().enumerate() {
-            chain.num_iterations = num_iterations;
-            chain.longest_elsewhere = longest;
             let from = begin + slice * index as f64;
             chain.restart(chain.objective);
-            anneal(search, chain, (from, from + slice), RACE_HEAT);
-            num_iterations = chain.num_iterations;
-            longest = longest.min(chain.best.max_route_cost());
+            anneal(search, effort, chain, (from, from + slice), RACE_HEAT);
+            effort.longest_elsewhere = effort.longest_elsewhere.min(chain.best.max_route_cost());
         }
         sort(&mut self.chains);
-        self.chains[0].num_iterations = num_iterations;
     }
 
     /// The plan with the shortest longest route.
@@ -115,39 +112,39 @@ impl Population {
     }
 
     pub fn into_best(mut self) -> Chain<SharedAirspace> {
-        let mut best = self.chains.swap_remove(0);
-        best.longest_elsewhere = f64::INFINITY;
-        best
+        self.chains.swap_remove(0)
     }
 
     /// Takes in a plan that is better than all: in the place of the worst.
     pub fn welcome(&mut self, state: &State) {
-        let num_iterations = self.chains[0].num_iterations;
         if let Some(worst) = self.chains.last_mut() {
             worst.adopt(state);
         }
         self.chains.rotate_right(1);
-        self.chains[0].num_iterations = num_iterations;
     }
 
     /// Improves the plan by itself, by `schedule`, or the plans by children, until the share `until` of the effort is used, or
     /// no route is longer than `floor`, which none can undercut.
-    pub fn improve(&mut self, search: &Search<'_>, schedule: &Schedule, until: f64, floor: f64) {
+    pub fn improve(
+        &mut self,
+        search: &Search<'_>,
+        effort: &mut Effort<'_>,
+        schedule: &Schedule,
+        until: f64,
+        floor: f64,
+    ) {
         if self.chains.len() == 1 {
-            return self.chains[0].anneal(search.network, search.budget, schedule, until, floor);
+            effort.longest_elsewhere = f64::INFINITY;
+            return self.chains[0].anneal(search.network, effort, schedule, until, floor);
         }
-        let mut num_iterations = self.chains[0].num_iterations;
-        let mut share = search.budget.share(num_iterations);
+        let mut share = effort.share();
         while share < until && self.best().best.max_route_cost() > floor {
             let mut child = self.child(search);
-            child.num_iterations = num_iterations;
-            child.longest_elsewhere = self.best().best.max_route_cost();
-            anneal(search, &mut child, (share, (share + self.child_share).min(until)), CHILD_HEAT);
-            num_iterations = child.num_iterations;
-            share = search.budget.share(num_iterations);
+            effort.longest_elsewhere = self.best().best.max_route_cost();
+            anneal(search, effort, &mut child, (share, (share + self.child_share).min(until)), CHILD_HEAT);
+            share = effort.share();
             self.take(search, child);
         }
-        self.chains[0].num_iterations = num_iterations;
     }
 
     fn child(&mut self, search: &Search<'_>) -> Chain<SharedAirspace> {
@@ -179,9 +176,15 @@ fn sort(chains: &mut [Chain<SharedAirspace>]) {
 }
 
 /// Anneals between two shares of the effort, with temperatures relative to the longest route.
-fn anneal(search: &Search<'_>, chain: &mut Chain<SharedAirspace>, (begin, end): (f64, f64), heat: (f64, f64)) {
+fn anneal(
+    search: &Search<'_>,
+    effort: &mut Effort<'_>,
+    chain: &mut Chain<SharedAirspace>,
+    (begin, end): (f64, f64),
+    heat: (f64, f64),
+) {
     let schedule = Schedule::scaled(begin, end, heat, chain.best.max_route_cost());
-    chain.anneal(search.network, search.budget, &schedule, end, 0.0);
+    chain.anneal(search.network, effort, &schedule, end, 0.0);
 }
 
 /// Shares of the sectors of a start: equal for the first, random about that for the others.

@@ -15,7 +15,8 @@ mod hulls;
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::search::{
-    Budget, Chain, Clock, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg, to_indices,
+    Budget, Chain, Clock, Effort, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg,
+    to_indices,
 };
 use cuts::{Cut, Cutter, Draw};
 use hulls::Hulls;
@@ -58,15 +59,16 @@ pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<u
     let state = State::new(network, &tours);
     let objective = Objective::longest_route(network, &state);
     let mut chain = Chain::new(network, state, objective, seed, Hulls::new(network, &tours));
-    anneal(network, &budget, &mut chain, MAX_END, MAX_HEAT);
+    let mut effort = Effort::new(&budget);
+    anneal(network, &mut effort, &mut chain, MAX_END, MAX_HEAT);
     chain.restart(Objective::total_within(chain.best.max_route_cost()));
-    anneal(network, &budget, &mut chain, 1.0, TOTAL_HEAT);
+    anneal(network, &mut effort, &mut chain, 1.0, TOTAL_HEAT);
     to_indices(chain.best.routes(network))
 }
 
-fn anneal(network: &Network, budget: &Budget<'_>, chain: &mut Chain<Hulls<'_>>, end: f64, heat: (f64, f64)) {
-    let schedule = Schedule::scaled(budget.share(chain.num_iterations), end, heat, chain.best.max_route_cost());
-    chain.anneal(network, budget, &schedule, end, 0.0);
+fn anneal(network: &Network, effort: &mut Effort<'_>, chain: &mut Chain<Hulls<'_>>, end: f64, heat: (f64, f64)) {
+    let schedule = Schedule::scaled(effort.share(), end, heat, chain.best.max_route_cost());
+    chain.anneal(network, effort, &schedule, end, 0.0);
 }
 
 /// The best of several plans made of cuts.
