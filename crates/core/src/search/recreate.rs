@@ -1,8 +1,9 @@
 //! Puts removed visits back, each at its cheapest place among its neighbours.
 //!
 //! Source: greedy insertion with blinks, Christiaens and Vanden Berghe 2020, section 5.2. Changed for the min-max objective:
-//! what an insertion would push a route over the best known maximum is charged tenfold, a step ends as soon as it is sure to
-//! be rejected, and only places beside near neighbours and at the depot are tried. O(neighbours) for a visit.
+//! what an insertion would push a route over the best known maximum is charged tenfold or a thousandfold, as the lot falls, a
+//! step ends as soon as it is sure to be rejected, and only places beside near neighbours and at the depot are tried.
+//! O(neighbours) for a visit.
 
 use super::airspace::Airspace;
 use super::network::Network;
@@ -17,8 +18,10 @@ const PLACE_BLINK: u64 = 1 << (u64::BITS - 8);
 const VISITS_PER_ROUTE_BLINK: u64 = 6;
 /// Routes at whose ends a visit is tried, beside those near it: a random run of them where there are more.
 const MAX_DEPOT_ENDS: u32 = 16;
-/// What a unit of overflow over the target costs, beside the added length.
-const OVERFLOW_PRICE: f64 = 10.0;
+/// What a unit of overflow over the target costs, beside the added length: the one or the other for every insertion. The high
+/// price makes plans that are well balanced, though longer in total, which the low one alone passes by; the low one leads to
+/// short plans, which are better where routes have many visits.
+const OVERFLOW_PRICES: [f64; 2] = [1000.0, 10.0];
 
 /// What a plan costs.
 #[derive(Clone, Copy, Debug)]
@@ -170,7 +173,8 @@ fn cheapest_place(
     airspace: &mut impl Airspace,
     blinks: &Blinks,
 ) -> Option<Place> {
-    let insertion = Insertion::new(network, visit, objective);
+    let overflow_price = OVERFLOW_PRICES[(blinks.salt >> 63) as usize];
+    let insertion = Insertion::new(network, visit, objective.target, overflow_price);
     let mut cheapest = Cheapest { state, visit, objective, airspace, blinks, price: f64::INFINITY, place: None };
     let last_route = state.route_costs.len() - 1;
     let mut reach = 0.0;
@@ -215,6 +219,7 @@ struct Insertion {
     service: f64,
     stop: f64,
     target: f64,
+    overflow_price: f64,
 }
 
 /// The places before and after one node.
@@ -226,9 +231,9 @@ struct Offers {
 }
 
 impl Insertion {
-    fn new(network: &Network, visit: u32, objective: &Objective) -> Self {
+    fn new(network: &Network, visit: u32, target: f64, overflow_price: f64) -> Self {
         let (point, service) = (network.points[visit as usize], network.services[visit as usize]);
-        Self { x: point.x, y: point.y, service, stop: network.stop, target: objective.target }
+        Self { x: point.x, y: point.y, service, stop: network.stop, target, overflow_price }
     }
 
     /// The places beside `node`, which is `leg` away. Most of the time of a search is spent here: both places are priced at
@@ -245,7 +250,7 @@ impl Insertion {
             let overflow = lesser(greater(excess + added, 0.0), added);
             offers.other_legs[side] = other_leg;
             offers.added[side] = added;
-            offers.prices[side] = added + OVERFLOW_PRICE * overflow;
+            offers.prices[side] = added + self.overflow_price * overflow;
         }
         offers
     }
