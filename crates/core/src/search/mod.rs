@@ -6,15 +6,17 @@
 //! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
 //! (`improve`); if the effort allows, a race of several cuts of the sectors (`population`); from the winner, ruin (`ruin`) and
 //! recreate (`recreate`) under annealing (`anneal`), or, with more effort, children of the best plans (`recombine`), annealed
-//! likewise; all that for the longest route, then annealing for the total with the longest route as a limit. Threads share
-//! their best plans now and then (`cooperate`). A time too short for all that goes into a rough plan (`rough`): sectors toured
-//! along strips, smoothed without neighbour lists (`smooth`) and balanced.
+//! likewise; exchanges that even out the routes (`balance`), for the last of the race and for the plan that is best in the end;
+//! all that for the longest route, then annealing for the total with the longest route as a limit. Threads share their best
+//! plans now and then (`cooperate`). A time too short for all that goes into a rough plan (`rough`): sectors toured along
+//! strips, smoothed without neighbour lists (`smooth`) and balanced.
 //!
 //! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
 //! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
 
 mod airspace;
 mod anneal;
+mod balance;
 mod budget;
 mod construct;
 mod cooperate;
@@ -32,6 +34,7 @@ use crate::problem::Problem;
 pub(crate) use airspace::Airspace;
 use airspace::SharedAirspace;
 pub(crate) use anneal::{Chain, Schedule};
+use balance::balance;
 pub(crate) use budget::{Budget, Effort};
 pub use budget::{Clock, Progress, Watch};
 use construct::Sweep;
@@ -162,7 +165,7 @@ impl Search<'_> {
             (None, Goal::Max) => Population::race(self, &mut effort, thread),
             (None, Goal::Total) => Population::single(self.fewest_routes(thread)),
         };
-        let floor = self.network.farthest_visit_bound() * (1.0 + 1e-12);
+        let floor = self.floor();
         let max_end = if population.best().best.max_route_cost() <= self.goal_cap() { 0.0 } else { MAX_END };
         let schedule = Schedule::scaled(effort.share(), max_end, MAX_HEAT, population.best().best.max_route_cost());
         // Every thread comes to every meeting, also one that has nothing left to do, or the others would wait for ever.
@@ -173,11 +176,27 @@ impl Search<'_> {
             }
         }
         let mut chain = population.into_best();
+        self.balance(&mut chain);
         chain.restart(self.total_objective(&chain.best));
         let schedule = Schedule::scaled(effort.share(), 1.0, TOTAL_HEAT, chain.best.max_route_cost());
         effort.longest_elsewhere = f64::INFINITY;
         chain.anneal(self.network, &mut effort, &schedule, 1.0, 0.0);
         (chain, effort.num_iterations)
+    }
+
+    /// Evens out the routes of a plan, if the longest can still become shorter, and that counts.
+    fn balance(&self, chain: &mut Chain<SharedAirspace>) {
+        if chain.best.max_route_cost() > self.floor().max(self.goal_cap()) {
+            let mut state = chain.best.clone();
+            if balance(self.network, self.budget, &mut state) {
+                chain.adopt(&state);
+            }
+        }
+    }
+
+    /// What no longest route can undercut, but for rounding.
+    fn floor(&self) -> f64 {
+        self.network.farthest_visit_bound() * (1.0 + 1e-12)
     }
 
     fn seed(&self, stream: u64) -> u64 {

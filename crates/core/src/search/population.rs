@@ -101,6 +101,10 @@ impl Population {
             let from = begin + slice * index as f64;
             chain.restart(chain.objective);
             anneal(search, effort, chain, (from, from + slice), RACE_HEAT);
+            // Half of what is wrong with a plan that was annealed for a short while is quickly mended, and hides the rest.
+            if rounds_left == 1 {
+                search.balance(chain);
+            }
             effort.longest_elsewhere = effort.longest_elsewhere.min(chain.best.max_route_cost());
         }
         sort(&mut self.chains);
