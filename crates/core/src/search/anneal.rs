@@ -97,7 +97,7 @@ impl<A: Airspace> Chain<A> {
             own.clone_from(state);
         }
         self.since_best.clear();
-        self.restart(self.objective);
+        self.restart(self.objective.aimed_at(state));
     }
 
     /// Anneals until the share `until` of the effort is used, or no route is longer than `floor`, which none can undercut.
@@ -147,7 +147,7 @@ impl<A: Airspace> Chain<A> {
         if rank.is_better(&self.best_rank) {
             self.best_rank = rank;
             self.since_best.settle(&mut self.best, &self.trial);
-            self.objective.target = self.objective.target.min(self.trial.max_route_cost());
+            self.objective = self.objective.aimed_at(&self.trial);
         }
     }
 

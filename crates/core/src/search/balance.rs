@@ -11,12 +11,13 @@
 //! move that adds least to the total first, and turns back where the mean route would be longer than the longest of the best
 //! set found. The routes changed are then smoothed, and all that is repeated until nothing is gained.
 //!
-//! One round costs O(visits of the routes relieved x neighbours), and a bounded number of moves tried.
+//! One round costs O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a bounded number of
+//! sets tried.
 
 use super::budget::Budget;
 use super::improve_routes;
 use super::network::Network;
-use super::state::{AFTER, Place, State, Touched};
+use super::state::{AFTER, State, Touched};
 
 /// Visits in a run, at most.
 const MAX_RUN: usize = 2;
@@ -54,6 +55,11 @@ struct Exchange {
 }
 
 impl Exchange {
+    /// What tells it from other exchanges.
+    fn place(&self) -> [(u32, u32, bool); 2] {
+        [self.given, self.taken].map(|run| (run.before, run.size, run.is_turned && run.size > 1))
+    }
+
     fn change(&self) -> f64 {
         self.giver_change + self.taker_change
     }
@@ -92,14 +98,7 @@ fn apply(network: &Network, state: &mut State, exchange: &Exchange, touched: &mu
         visits
     });
     for (visits, place) in [(given, exchange.taken.before), (taken, exchange.given.before)] {
-        let mut last = place;
-        for visit in visits {
-            let node = &state.nodes[last as usize];
-            let (leg_in, leg_out) = (network.leg(last, visit), network.leg(visit, node.next));
-            let added = leg_in + leg_out - node.legs[AFTER] + network.services[visit as usize];
-            state.insert(network, visit, &Place { after: last, leg_in, leg_out, added }, touched);
-            last = visit;
-        }
+        state.insert_string(network, place, &visits, touched);
     }
 }
 
@@ -152,11 +151,11 @@ impl<'a> Sets<'a> {
         }
     }
 
-    /// The set that leaves the longest route shortest; `None` if none shortens it or the time is over.
+    /// The set that leaves the longest route shortest; `None` if none shortens it.
     fn best(mut self, budget: &Budget<'_>) -> Option<Vec<Exchange>> {
         for size in 1..=MAX_SET {
             if budget.is_time_over() {
-                return None;
+                break;
             }
             self.num_tries = 0;
             self.extend(size, None);
@@ -184,7 +183,7 @@ impl<'a> Sets<'a> {
             self.longest = self.costs[route];
             self.best_set.clone_from(&self.set);
         }
-        // An exchange relieves one route.
+        // An exchange is counted on to relieve one route.
         if num_left == 0 || num_over > num_left {
             return;
         }
@@ -240,11 +239,12 @@ impl<'a> Sets<'a> {
         }
     }
 
-    /// All exchanges that shorten `giver` and could be part of a better set.
+    /// The exchanges that shorten `giver`, the one that adds least to the total first. An empty route gets nothing: the other end is
+    /// always beside a visit.
     fn exchanges(&self, giver: u32) -> Vec<Exchange> {
         let (network, nodes) = (self.network, &self.state.nodes);
         let num_visits = network.num_visits as u32;
-        // No set adds more to the total than this.
+        // A better set adds less to the total. An exchange that adds more alone is left out, though others might make up for it.
         let max_change = self.goal() * self.costs.len() as f64 - self.state.total;
         let mut found = Vec::new();
         let mut before = num_visits + giver;
@@ -275,6 +275,9 @@ impl<'a> Sets<'a> {
             }
             before = first;
         }
+        // The same exchange is found from both ends of its runs.
+        found.sort_unstable_by_key(Exchange::place);
+        found.dedup_by_key(|exchange| exchange.place());
         found.sort_by(|a, b| a.change().total_cmp(&b.change()));
         found
     }
@@ -339,11 +342,15 @@ mod tests {
     use super::*;
     use crate::generate::{Variant, generate};
     use crate::geometry::Point;
-    use crate::problem::Problem;
+    use crate::problem::{Depot, Problem, VehicleType, Visit};
     use proptest::prelude::*;
 
     fn network(depot: Point, ponds: &[Point], num_routes: usize) -> Network {
-        let mut network = Network::new(&Problem::research(depot, ponds, num_routes).unwrap());
+        network_of(&Problem::research(depot, ponds, num_routes).unwrap())
+    }
+
+    fn network_of(problem: &Problem) -> Network {
+        let mut network = Network::new(problem);
         network.find_neighbours();
         network
     }
@@ -380,6 +387,15 @@ mod tests {
         }
     }
 
+    #[test]
+    fn without_time_nothing_is_changed() {
+        let ponds: Vec<Point> = (-3..=3).map(|x| Point::new(f64::from(x), 10.0)).collect();
+        let network = network(Point::new(0.0, 0.0), &ponds, 3);
+        let mut state = State::new(&network, &[vec![0, 1, 2], vec![3, 4, 5], vec![6]]);
+        assert!(!balance(&network, &Budget::new(None, Some(&|| 1.0), None), &mut state));
+        assert_eq!(state.routes(&network), [vec![0, 1, 2], vec![3, 4, 5], vec![6]]);
+    }
+
     fn assert_costs_are_those_of_the_routes(network: &Network, state: &State) {
         let mut visits: Vec<u32> = state.routes(network).concat();
         visits.sort_unstable();
@@ -409,10 +425,19 @@ mod tests {
             (num_ponds, num_routes, seed) in (2_usize..40, 2_usize..6, 0_u64..1000),
             services in prop::collection::vec(0.0_f64..0.3, 40),
             homes in prop::collection::vec(0_usize..6, 40),
+            has_stops: bool,
         ) {
-            let farm = generate(num_ponds, Variant::Authors, seed).unwrap();
-            let mut network = network(farm.depot, &farm.ponds, num_routes);
-            network.services[..num_ponds].copy_from_slice(&services[..num_ponds]);
+            let mut farm = generate(num_ponds, Variant::Authors, seed).unwrap();
+            if has_stops {
+                // Some ponds lie in one place, or at the depot, where a leg takes no time.
+                let lattice = |point: Point| Point::new((4.0 * point.x).round(), (4.0 * point.y).round());
+                (farm.depot, farm.ponds) = (lattice(farm.depot), farm.ponds.into_iter().map(lattice).collect());
+            }
+            let visits = farm.ponds.iter().zip(&services);
+            let visits = visits.map(|(&position, &service_duration)| Visit { position, service_duration }).collect();
+            let stop = if has_stops { 0.5 } else { 0.0 };
+            let vehicle_type = VehicleType { speed: 2.0, leg_stop_duration: stop, ..VehicleType::unlimited(num_routes) };
+            let network = network_of(&Problem::new(Depot { position: farm.depot }, visits, vehicle_type).unwrap());
             let mut routes = vec![Vec::new(); network.num_routes];
             for (visit, home) in homes[..num_ponds].iter().enumerate() {
                 routes[home % network.num_routes].push(visit as u32);

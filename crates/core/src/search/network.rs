@@ -21,6 +21,12 @@ pub(crate) struct Neighbour {
     pub node: u32,
 }
 
+/// Cost of a leg whose flight alone takes `length`: who is there already need not stop.
+#[inline(always)]
+pub(super) fn leg_of_length(length: f64, stop: f64) -> f64 {
+    if length > 0.0 { length + stop } else { 0.0 }
+}
+
 /// Visits `0..num_visits`, then one copy of the depot per route: `num_visits + route`.
 #[derive(Debug)]
 pub(crate) struct Network {
@@ -72,12 +78,7 @@ impl Network {
     /// Cost of the leg between two places.
     #[inline]
     pub fn leg_between(&self, from: Point, to: Point) -> f64 {
-        self.leg_of_length(from.distance(to))
-    }
-
-    #[inline]
-    fn leg_of_length(&self, length: f64) -> f64 {
-        if length > 0.0 { length + self.stop } else { 0.0 }
+        leg_of_length(from.distance(to), self.stop)
     }
 
     /// Cost of the leg between two nodes.
@@ -123,7 +124,7 @@ impl Network {
         for visit in 0..self.num_visits {
             tree.nearest(visit, self.num_neighbours, &mut found);
             neighbours.extend(found.iter().map(|near| {
-                let leg = self.leg_of_length(near.squared_distance.sqrt());
+                let leg = leg_of_length(near.squared_distance.sqrt(), self.stop);
                 Neighbour { leg, node: near.index }
             }));
         }

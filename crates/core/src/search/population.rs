@@ -29,7 +29,7 @@ const START_STEPS_PER_VISIT: f64 = 0.3;
 /// at least the first, and the second times the number of visits.
 const CHILDREN_STEPS_PER_VISIT: (f64, f64) = (100.0, 0.4);
 /// Steps per visit of the whole effort for one more parent.
-const STEPS_PER_VISIT_AND_PARENT: f64 = 200.0;
+const STEPS_PER_VISIT_AND_PARENT: f64 = 100.0;
 /// Parents, if there are children.
 const MIN_PARENTS: usize = 4;
 const MAX_PARENTS: usize = 16;

@@ -30,7 +30,7 @@ pub(super) fn cross(network: &Network, keeper: &State, giver: &State, random: &m
     if order.len() < 2 {
         return keeper.clone();
     }
-    let children = (0..NUM_RUNS).map(|_| {
+    let children = (0..NUM_RUNS).filter_map(|_| {
         let (first, count) = (random.below(order.len()), 1 + random.below(order.len() - 1));
         let mut is_taken = vec![false; network.num_routes];
         for place in first..first + count {
@@ -57,8 +57,8 @@ fn routes_by_angle(network: &Network, state: &State) -> Vec<u32> {
     order
 }
 
-/// The routes of `giver` that are taken, and of `keeper` those that lose least by it.
-fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], random: &mut Random) -> State {
+/// The routes of `giver` that are taken, and of `keeper` those that lose least by it; `None` if a visit finds no place.
+fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], random: &mut Random) -> Option<State> {
     let goes_with_giver = |visit: u32| is_taken[giver.nodes[visit as usize].route as usize];
     let mut num_lost = vec![0u32; network.num_routes];
     for visit in 0..network.num_visits as u32 {
@@ -79,7 +79,7 @@ fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], 
         (0..network.num_visits as u32).filter(|&visit| child.nodes[visit as usize].route == ABSENT).collect();
     let target = keeper.max_route_cost().min(giver.max_route_cost());
     let objective = Objective { target, ..Objective::longest_route(network, keeper) };
-    Recreate::new(network).insert(
+    let is_complete = Recreate::new(network).insert(
         network,
         &mut child,
         &missing,
@@ -89,7 +89,7 @@ fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], 
         random,
         &mut Touched::default(),
     );
-    child
+    is_complete.then_some(child)
 }
 
 /// `base` with those components of `donor` that make it better by `objective`; `None` if there are none.

@@ -6,7 +6,7 @@
 //! O(neighbours) for a visit.
 
 use super::airspace::Airspace;
-use super::network::Network;
+use super::network::{Network, leg_of_length};
 use super::state::{AFTER, BEFORE, Node, Place, RouteCosts, State, Touched};
 use crate::random::Random;
 use std::cmp::Ordering;
@@ -49,6 +49,12 @@ impl Objective {
     /// Only the total, while no route may become longer than `cap`.
     pub fn total_within(cap: f64) -> Self {
         Self { max_weight: 0.0, total_weight: 1.0, cap, target: cap }
+    }
+
+    /// The same, now that `state` is known: no route should become longer than its longest one, if that counts at all.
+    pub fn aimed_at(self, state: &State) -> Self {
+        let target = if self.max_weight > 0.0 { self.target.min(state.max_route_cost()) } else { self.target };
+        Self { target, ..self }
     }
 
     /// What `state` costs.
@@ -176,18 +182,16 @@ fn cheapest_place(
     let overflow_price = OVERFLOW_PRICES[(blinks.salt >> 63) as usize];
     let insertion = Insertion::new(network, visit, objective.target, overflow_price);
     let mut cheapest = Cheapest { state, visit, objective, airspace, blinks, price: f64::INFINITY, place: None };
-    let last_route = state.route_costs.len() - 1;
     let mut reach = 0.0;
     for neighbour in network.neighbours(visit) {
         let (leg, node) = (neighbour.leg, &state.nodes[neighbour.node as usize]);
         reach = leg;
-        // A place whose other end is nearer was tried from there, so the other leg is at least as long.
+        // A place whose other end is nearer was tried from there, so the other leg is at least as long. The legs of absent
+        // neighbours are such that none of them passes.
         if 2.0 * leg + insertion.service - greater(node.legs[BEFORE], node.legs[AFTER]) >= cheapest.price {
             continue;
         }
-        // An absent neighbour has a route out of range, and then a price without bound.
-        let route = (node.route as usize).min(last_route);
-        let offers = insertion.offers_beside(node, leg, state.route_costs[route]);
+        let offers = insertion.offers_beside(node, leg, state.route_costs[node.route as usize]);
         if lesser(offers.prices[BEFORE], offers.prices[AFTER]) < cheapest.price {
             cheapest.consider(neighbour.node, leg, &offers);
         }
@@ -245,7 +249,7 @@ impl Insertion {
         for side in [BEFORE, AFTER] {
             let (dx, dy) = (node.xs[side] - self.x, node.ys[side] - self.y);
             let length = (dx * dx + dy * dy).sqrt();
-            let other_leg = if length > 0.0 { length + self.stop } else { 0.0 };
+            let other_leg = leg_of_length(length, self.stop);
             let added = leg + other_leg - node.legs[side];
             let overflow = lesser(greater(excess + added, 0.0), added);
             offers.other_legs[side] = other_leg;
@@ -313,5 +317,25 @@ impl Blinks {
     fn pass_over(&self, after: u32, route: u32) -> bool {
         let hash = |index: u32| (self.salt ^ u64::from(index)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         hash(after) < PLACE_BLINK || hash(!route) < self.route_limit
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::problem::Problem;
+
+    /// A limit that may be used up must not be pulled down by the plans on the way.
+    #[test]
+    fn a_better_plan_lowers_the_target_only_if_the_longest_route_counts() {
+        let ponds = [3.0, -1.0].map(|x| Point::new(x, 0.0));
+        let network = Network::new(&Problem::research(Point::new(0.0, 0.0), &ponds, 2).unwrap());
+        let (together, apart) = (State::new(&network, &[vec![0, 1]]), State::new(&network, &[vec![0], vec![1]]));
+        let longest = Objective::longest_route(&network, &together);
+        assert!((longest.target - 8.0).abs() < 1e-12);
+        assert!((longest.aimed_at(&apart).target - 6.0).abs() < 1e-12);
+        assert!((longest.aimed_at(&apart).aimed_at(&together).target - 6.0).abs() < 1e-12);
+        assert!((Objective::total_within(9.0).aimed_at(&apart).target - 9.0).abs() < 1e-12);
     }
 }
