@@ -9,22 +9,25 @@
 //! routes add up. A depth-first search looks for the few that together leave the longest route shortest: it always relieves
 //! the route that is longest at the moment, as an ejection chain does (Glover, Discrete Applied Mathematics 1996), by the
 //! move that adds least to the total first, and turns back where the mean route would be longer than the longest of the best
-//! set found. The routes changed are then smoothed, and all that is repeated until nothing is gained.
+//! set found. All routes are smoothed before, those changed by a set after it, and sets follow each other until nothing is
+//! gained.
 //!
-//! One round costs O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a bounded number of
-//! sets tried.
+//! Smoothing costs O(visits), one set O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a
+//! bounded number of sets tried.
 
 use super::budget::Budget;
-use super::improve_routes;
+use super::construct::improve_route;
 use super::network::Network;
-use super::state::{AFTER, State, Touched};
+use super::state::{AFTER, BEFORE, State, Touched};
 
 /// Visits in a run, at most.
 const MAX_RUN: usize = 2;
 /// Neighbours tried per end of a run.
 const NUM_TRIED: usize = 5;
 /// Exchanges in a set, at most.
-const MAX_SET: usize = 4;
+const MAX_SET: usize = 3;
+/// What an exchange may add to the total, in mean legs: longer lists take time and shorten no plan.
+const MAX_CHANGE: f64 = 1.0;
 /// Exchanges tried for sets of each size, at most.
 const MAX_TRIES: usize = 500;
 /// Sets in a row, at most; two or three are usual.
@@ -55,21 +58,20 @@ struct Exchange {
 }
 
 impl Exchange {
-    /// What tells it from other exchanges.
-    fn place(&self) -> [(u32, u32, bool); 2] {
-        [self.given, self.taken].map(|run| (run.before, run.size, run.is_turned && run.size > 1))
-    }
-
     fn change(&self) -> f64 {
         self.giver_change + self.taker_change
     }
 }
 
-/// Exchanges visits between routes until no set of exchanges shortens the longest route of `state`. Returns whether it did
-/// anything.
+/// Smooths the routes of `state` and exchanges visits between them until no set of exchanges shortens the longest one. Returns
+/// whether it did anything.
 pub(super) fn balance(network: &Network, budget: &Budget<'_>, state: &mut State) -> bool {
-    for num_rounds in 0..MAX_ROUNDS {
-        let Some(set) = Sets::new(network, state).best(budget) else { return num_rounds > 0 };
+    let mut has_changed = false;
+    for route in 0..network.num_routes {
+        has_changed |= smooth(network, budget, state, route, |_| true);
+    }
+    for _ in 0..MAX_ROUNDS {
+        let Some(set) = Sets::new(network, state).best(budget) else { break };
         let mut touched = Touched::default();
         for exchange in &set {
             apply(network, state, exchange, &mut touched);
@@ -77,12 +79,28 @@ pub(super) fn balance(network: &Network, budget: &Budget<'_>, state: &mut State)
         touched.routes.sort_unstable();
         touched.routes.dedup();
         for &route in &touched.routes {
-            let mut visits = state.route(network, route as usize);
-            improve_routes(network, budget, std::slice::from_mut(&mut visits));
-            state.replace_route(network, route as usize, &visits);
+            smooth(network, budget, state, route as usize, |visit| touched.nodes.contains(&visit));
         }
+        has_changed = true;
     }
-    true
+    has_changed
+}
+
+/// Improves one route, from those visits that `is_new` says have new neighbours. Returns whether it did anything.
+fn smooth(
+    network: &Network,
+    budget: &Budget<'_>,
+    state: &mut State,
+    route: usize,
+    is_new: impl Fn(u32) -> bool,
+) -> bool {
+    let mut visits = state.route(network, route);
+    let queue = visits.iter().rev().copied().filter(|&visit| is_new(visit)).collect();
+    let has_moved = improve_route(network, budget, &mut visits, queue);
+    if has_moved {
+        state.replace_route(network, route, &visits);
+    }
+    has_moved
 }
 
 fn apply(network: &Network, state: &mut State, exchange: &Exchange, touched: &mut Touched) {
@@ -115,6 +133,33 @@ struct GivenRun {
     freed: f64,
     /// The leg that would close the gap.
     closing: f64,
+}
+
+/// One end of a run given, and the leg to what it is put beside.
+struct GivenEnd<'a> {
+    given: &'a GivenRun,
+    is_first: bool,
+    leg: f64,
+}
+
+/// The run a route takes out beside one of its nodes, to make room; none, if its size is 0.
+#[derive(Clone, Copy, Debug)]
+struct TakenRun {
+    near: u32,
+    /// Whether the run lies after `near`.
+    is_after: bool,
+    size: u32,
+    /// Beside `near`.
+    first: u32,
+    last: u32,
+    /// The node beyond `last`.
+    far: u32,
+    /// Its legs and services.
+    inner: f64,
+    /// The same with the legs to and from it.
+    freed: f64,
+    /// What the legs to and from it cost at least, wherever it is put.
+    least_legs: f64,
 }
 
 /// Looks for the best set of independent exchanges.
@@ -239,101 +284,135 @@ impl<'a> Sets<'a> {
         }
     }
 
-    /// The exchanges that shorten `giver`, the one that adds least to the total first. An empty route gets nothing: the other end is
-    /// always beside a visit.
+    /// The exchanges that shorten `giver`, each once, the one that adds least to the total first. An empty route gets nothing: the
+    /// other end is always beside a visit.
     fn exchanges(&self, giver: u32) -> Vec<Exchange> {
-        let (network, nodes) = (self.network, &self.state.nodes);
-        let num_visits = network.num_visits as u32;
         // A better set adds less to the total. An exchange that adds more alone is left out, though others might make up for it.
-        let max_change = self.goal() * self.costs.len() as f64 - self.state.total;
+        let room = self.goal() * self.costs.len() as f64 - self.state.total;
+        let mean_leg = self.state.total / self.network.points.len() as f64;
+        let max_change = room.min(MAX_CHANGE * mean_leg);
+        let runs = self.given_runs(giver);
         let mut found = Vec::new();
-        let mut before = num_visits + giver;
-        loop {
-            let first = nodes[before as usize].next;
-            if first >= num_visits {
-                break;
-            }
-            let (mut end, mut inner) = (first, network.services[first as usize]);
-            for size in 1..=MAX_RUN as u32 {
-                let after = nodes[end as usize].next;
-                let given = GivenRun {
-                    before,
-                    size,
-                    first,
-                    last: end,
-                    after,
-                    inner,
-                    freed: nodes[before as usize].legs[AFTER] + inner + nodes[end as usize].legs[AFTER],
-                    closing: network.leg(before, after),
-                };
-                self.exchanges_of(giver, &given, max_change, &mut found);
-                if after >= num_visits {
-                    break;
-                }
-                inner += nodes[end as usize].legs[AFTER] + network.services[after as usize];
-                end = after;
-            }
-            before = first;
-        }
-        // The same exchange is found from both ends of its runs.
-        found.sort_unstable_by_key(Exchange::place);
-        found.dedup_by_key(|exchange| exchange.place());
-        found.sort_by(|a, b| a.change().total_cmp(&b.change()));
-        found
-    }
-
-    /// Exchanges that put an end of the run beside a near neighbour of it.
-    fn exchanges_of(&self, giver: u32, given: &GivenRun, max_change: f64, found: &mut Vec<Exchange>) {
-        let (network, nodes) = (self.network, &self.state.nodes);
-        let num_visits = network.num_visits as u32;
-        let ends = [(given.first, given.last, true), (given.last, given.first, false)];
-        for &(near_end, far_end, is_first) in &ends[..if given.size == 1 { 1 } else { 2 }] {
-            for neighbour in network.neighbours(near_end).iter().take(NUM_TRIED) {
-                let near = neighbour.node;
-                let taker = nodes[near as usize].route;
-                if taker == giver {
+        for (place, run) in runs[0].iter().enumerate() {
+            for neighbour in self.network.neighbours(run.first).iter().take(NUM_TRIED) {
+                if self.state.nodes[neighbour.node as usize].route == giver {
                     continue;
                 }
                 for is_after in [true, false] {
-                    // The run taken lies after or before `near`; the given one comes in its place, `near_end` beside `near`.
-                    let step = |node: u32| {
-                        let node = &nodes[node as usize];
-                        if is_after { node.next } else { node.previous }
-                    };
-                    let leg_of = |from: u32, to: u32| nodes[if is_after { from } else { to } as usize].legs[AFTER];
-                    let first = step(near);
-                    let first_leg = leg_of(near, first);
-                    let (mut last, mut far, mut freed) = (near, first, first_leg);
-                    for size in 0..=MAX_RUN as u32 {
-                        let taker_change = neighbour.leg + given.inner + network.leg(far_end, far) - freed;
-                        let (mut giver_change, mut is_turned) = (given.closing - given.freed, false);
-                        if size > 0 {
-                            let straight = network.leg(given.before, first) + network.leg(last, given.after);
-                            let turned = network.leg(given.before, last) + network.leg(first, given.after);
-                            let inner = freed - first_leg - leg_of(last, far);
-                            giver_change = inner + straight.min(turned) - given.freed;
-                            is_turned = (turned < straight) == is_after;
+                    let taken = self.taken_runs(neighbour.node, is_after);
+                    for (size, runs) in (1..).zip(&runs) {
+                        let beginning = runs.get(place).map(|run| (run, true));
+                        // Of one visit, both ends are the same.
+                        let ending = if size > 1 { place.checked_sub(size - 1) } else { None };
+                        for (given, is_first) in beginning.into_iter().chain(ending.map(|first| (&runs[first], false)))
+                        {
+                            let end = GivenEnd { given, is_first, leg: neighbour.leg };
+                            found.extend(
+                                taken.iter().flatten().filter_map(|taken| self.exchange(&end, taken, max_change)),
+                            );
                         }
-                        if giver_change < 0.0 && giver_change + taker_change < max_change {
-                            let before = if is_after { near } else { far };
-                            found.push(Exchange {
-                                given: Run { before: given.before, size: given.size, is_turned: is_first != is_after },
-                                taken: Run { before, size, is_turned },
-                                taker,
-                                giver_change,
-                                taker_change,
-                            });
-                        }
-                        if far >= num_visits {
-                            break;
-                        }
-                        last = far;
-                        far = step(last);
-                        freed += network.services[last as usize] + leg_of(last, far);
                     }
                 }
             }
         }
+        found.sort_by(|a, b| a.change().total_cmp(&b.change()));
+        found
+    }
+
+    /// The runs that `giver` can give: by size, then in flying order.
+    fn given_runs(&self, giver: u32) -> [Vec<GivenRun>; MAX_RUN] {
+        let (network, nodes) = (self.network, &self.state.nodes);
+        let mut runs = std::array::from_fn(|_| Vec::with_capacity(self.state.route_sizes[giver as usize] as usize));
+        let mut before = network.num_visits as u32 + giver;
+        while (nodes[before as usize].next as usize) < network.num_visits {
+            let first = nodes[before as usize].next;
+            let (mut last, mut inner) = (first, network.services[first as usize]);
+            for (size, runs) in (1..).zip(&mut runs) {
+                let after = nodes[last as usize].next;
+                let freed = nodes[before as usize].legs[AFTER] + inner + nodes[last as usize].legs[AFTER];
+                let closing = network.leg(before, after);
+                runs.push(GivenRun { before, size, first, last, after, inner, freed, closing });
+                if after as usize >= network.num_visits {
+                    break;
+                }
+                inner += nodes[last as usize].legs[AFTER] + network.services[after as usize];
+                last = after;
+            }
+            before = first;
+        }
+        runs
+    }
+
+    /// The runs that the route of `near` can give on one side of it, the shortest first.
+    fn taken_runs(&self, near: u32, is_after: bool) -> [Option<TakenRun>; MAX_RUN + 1] {
+        let nodes = &self.state.nodes;
+        let (side, other_side) = if is_after { (AFTER, BEFORE) } else { (BEFORE, AFTER) };
+        let step = |node: u32| {
+            let node = &nodes[node as usize];
+            if is_after { node.next } else { node.previous }
+        };
+        let mut runs = [None; MAX_RUN + 1];
+        let first = step(near);
+        let (mut last, mut far, mut freed) = (near, first, nodes[near as usize].legs[side]);
+        for (size, run) in (0..).zip(&mut runs) {
+            let (mut inner, mut least_legs) = (0.0, 0.0);
+            if size > 0 {
+                inner = freed - nodes[first as usize].legs[other_side] - nodes[last as usize].legs[side];
+                least_legs = self.least_leg(first) + self.least_leg(last);
+            }
+            *run = Some(TakenRun { near, is_after, size, first, last, far, inner, freed, least_legs });
+            if far as usize >= self.network.num_visits {
+                break;
+            }
+            last = far;
+            far = step(last);
+            freed += self.network.services[last as usize] + nodes[last as usize].legs[side];
+        }
+        runs
+    }
+
+    /// The exchange that puts an end of a run beside the node next to which the taken one lies; `None` if that does not shorten
+    /// the giver, adds more than `max_change` to the total, or is found from the other end as well.
+    fn exchange(&self, end: &GivenEnd<'_>, taken: &TakenRun, max_change: f64) -> Option<Exchange> {
+        let (network, given) = (self.network, end.given);
+        let far_end = if end.is_first { given.last } else { given.first };
+        // What the giver has instead, but for the legs to and from a taken run.
+        let inner = if taken.size > 0 { taken.inner } else { given.closing };
+        let mut giver_change = inner - given.freed;
+        let least_change = giver_change + taken.least_legs;
+        let near_change = end.leg + given.inner - taken.freed;
+        if least_change >= 0.0 || least_change + near_change + self.least_leg(far_end) >= max_change {
+            return None;
+        }
+        let taker_change = near_change + network.leg(far_end, taken.far);
+        if least_change + taker_change >= max_change || (!taken.is_after && self.is_tried(far_end, taken.far)) {
+            return None;
+        }
+        let mut is_turned = false;
+        if taken.size > 0 {
+            let straight = network.leg(given.before, taken.first) + network.leg(taken.last, given.after);
+            let turned = network.leg(given.before, taken.last) + network.leg(taken.first, given.after);
+            giver_change += straight.min(turned);
+            is_turned = (turned < straight) == taken.is_after;
+        }
+        let before = if taken.is_after { taken.near } else { taken.far };
+        (giver_change < 0.0 && giver_change + taker_change < max_change).then_some(Exchange {
+            given: Run { before: given.before, size: given.size, is_turned: end.is_first != taken.is_after },
+            taken: Run { before, size: taken.size, is_turned },
+            taker: self.state.nodes[taken.near as usize].route,
+            giver_change,
+            taker_change,
+        })
+    }
+
+    /// Whether an exchange that puts `end` beside `node` is also found from there.
+    fn is_tried(&self, end: u32, node: u32) -> bool {
+        self.network.neighbours(end).iter().take(NUM_TRIED).any(|neighbour| neighbour.node == node)
+    }
+
+    /// No leg of a visit is cheaper.
+    fn least_leg(&self, visit: u32) -> f64 {
+        self.network.neighbours(visit)[0].leg.min(self.network.depot_legs[visit as usize])
     }
 }
 
@@ -419,6 +498,11 @@ mod tests {
         }
     }
 
+    /// What tells an exchange from others.
+    fn place(exchange: &Exchange) -> [(u32, u32, bool); 2] {
+        [exchange.given, exchange.taken].map(|run| (run.before, run.size, run.is_turned && run.size > 1))
+    }
+
     proptest! {
         #[test]
         fn exchanges_change_the_routes_as_they_say(
@@ -445,17 +529,20 @@ mod tests {
             let mut state = State::new(&network, &routes);
             let sets = Sets::new(&network, &state);
             for giver in 0..network.num_routes as u32 {
-                for exchange in sets.exchanges(giver) {
-                    assert_changes_add_up(&network, &state, &[exchange]);
+                let exchanges = sets.exchanges(giver);
+                for (index, exchange) in exchanges.iter().enumerate() {
+                    assert_changes_add_up(&network, &state, &[*exchange]);
+                    prop_assert!(exchanges[..index].iter().all(|other| place(other) != place(exchange)));
                 }
             }
             if let Some(set) = sets.best(&unlimited()) {
                 assert_changes_add_up(&network, &state, &set);
             }
-            let longest = state.max_route_cost();
+            let before = state.clone();
             let has_changed = balance(&network, &unlimited(), &mut state);
             assert_costs_are_those_of_the_routes(&network, &state);
-            prop_assert_eq!(has_changed, state.max_route_cost() < longest);
+            prop_assert!(state.max_route_cost() <= before.max_route_cost() + 1e-9);
+            prop_assert_eq!(has_changed, state.routes(&network) != before.routes(&network));
         }
     }
 }

@@ -79,14 +79,21 @@ pub(crate) fn open_at_best_leg(network: &Network, route: &mut [u32]) {
 
 /// Improves each route on its own by 2-opt and Or-opt, and stops between two moves when the time is over.
 pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
-    for (route, visits) in routes.iter_mut().enumerate() {
-        let depot = (network.num_visits + route) as u32;
-        visits.push(depot);
-        improve_ring(network, budget, visits);
-        let place = visits.iter().position(|&node| node == depot).unwrap_or(0);
-        visits.rotate_left(place);
-        visits.remove(0);
+    for visits in routes {
+        let queue = visits.iter().rev().copied().collect();
+        improve_route(network, budget, visits, queue);
     }
+}
+
+/// Improves one route, from the visits of it that are in `queue`. Returns whether it did anything.
+pub(super) fn improve_route(network: &Network, budget: &Budget<'_>, visits: &mut Vec<u32>, queue: Vec<u32>) -> bool {
+    let depot = network.num_visits as u32;
+    visits.push(depot);
+    let has_moved = improve_ring(network, budget, visits, queue);
+    let place = visits.iter().position(|&node| node == depot).unwrap_or(0);
+    visits.rotate_left(place);
+    visits.remove(0);
+    has_moved
 }
 
 /// Ends of new sectors, each with its share of the cost, were cost spread evenly within each old sector.

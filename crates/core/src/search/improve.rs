@@ -26,27 +26,33 @@ struct Ring<'a> {
 }
 
 /// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
-/// it or the time is over.
-pub(crate) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [u32]) {
+/// it or the time is over. Looks at `queue` first, the last of it first, and else only at what its moves touch: all visits that
+/// such a move might begin at. Returns whether it did anything.
+pub(crate) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [u32], queue: Vec<u32>) -> bool {
     if order.len() < 5 {
-        return;
+        return false;
     }
     let mut position = vec![ELSEWHERE; network.points.len()];
     for (place, &node) in order.iter().enumerate() {
         position[node as usize] = place as u32;
     }
-    let queue: Vec<u32> = order.iter().rev().copied().filter(|&node| (node as usize) < network.num_visits).collect();
-    let is_queued = vec![true; network.points.len()];
+    let mut is_queued = vec![false; network.points.len()];
+    for &visit in &queue {
+        is_queued[visit as usize] = true;
+    }
     let mut ring = Ring { network, order, position, queue, is_queued };
-    let mut num_looked_at = 0usize;
+    let (mut num_looked_at, mut has_moved) = (0usize, false);
     while let Some(visit) = ring.queue.pop() {
         ring.is_queued[visit as usize] = false;
-        while ring.two_opt(visit) || ring.or_opt(visit) {}
+        while ring.two_opt(visit) || ring.or_opt(visit) {
+            has_moved = true;
+        }
         num_looked_at += 1;
         if num_looked_at.is_multiple_of(VISITS_PER_LOOK) && budget.is_time_over() {
-            return;
+            break;
         }
     }
+    has_moved
 }
 
 impl Ring<'_> {

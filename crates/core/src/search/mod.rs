@@ -43,6 +43,7 @@ use cooperate::Meeting;
 pub(crate) use network::Network;
 use population::Population;
 pub(crate) use recreate::Objective;
+use recreate::Rank;
 use rough::RoughPlan;
 pub(crate) use state::State;
 
@@ -128,7 +129,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     }
     network.find_neighbours();
     let search = Search { network: &network, budget: &budget, options, meeting: Meeting::new(options.num_threads) };
-    let mut runs: Vec<(Chain<SharedAirspace>, u64)> = std::thread::scope(|scope| {
+    let runs: Vec<(State, u64)> = std::thread::scope(|scope| {
         let others: Vec<_> = (1..options.num_threads)
             .map(|thread| {
                 scope.spawn({
@@ -143,8 +144,10 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
         std::iter::once(first).chain(rest).collect()
     });
     let num_iterations = runs[0].1;
-    runs.sort_by(|a, b| a.0.best_rank.compare(&b.0.best_rank));
-    Outcome { routes: to_indices(runs[0].0.best.routes(&network)), num_iterations }
+    let better =
+        |one: State, other: State| if search.rank(&other).is_clearly_better(&search.rank(&one)) { other } else { one };
+    let best = runs.into_iter().map(|run| run.0).reduce(better);
+    Outcome { routes: best.map_or_else(Vec::new, |best| to_indices(best.routes(&network))), num_iterations }
 }
 
 /// What the threads of one search share.
@@ -158,7 +161,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// One thread's search: the longest route, by several plans if the effort allows, then the total of the best. Returns the
     /// plan and the number of steps.
-    fn run(&self, thread: usize) -> (Chain<SharedAirspace>, u64) {
+    fn run(&self, thread: usize) -> (State, u64) {
         let mut effort = Effort::new(self.budget);
         let mut population = match (self.options.start, self.options.goal) {
             (Some(routes), _) => Population::single(self.chain_from(&to_nodes(routes), thread as u64)),
@@ -176,12 +179,26 @@ impl Search<'_> {
             }
         }
         let mut chain = population.into_best();
+        let begin = effort.share();
         self.balance(&mut chain);
         chain.restart(self.total_objective(&chain.best));
-        let schedule = Schedule::scaled(effort.share(), 1.0, TOTAL_HEAT, chain.best.max_route_cost());
+        // What is shortened leaves room for visits of the longest route, if there is time to hand them on once more.
+        let is_handed_on = self.options.slack == 0.0;
+        let end = if is_handed_on { 1.0 - (effort.share() - begin) } else { 1.0 };
+        let schedule = Schedule::scaled(effort.share(), end, TOTAL_HEAT, chain.best.max_route_cost());
         effort.longest_elsewhere = f64::INFINITY;
-        chain.anneal(self.network, &mut effort, &schedule, 1.0, 0.0);
-        (chain, effort.num_iterations)
+        chain.anneal(self.network, &mut effort, &schedule, end, 0.0);
+        if is_handed_on {
+            self.balance(&mut chain);
+        }
+        (chain.best, effort.num_iterations)
+    }
+
+    /// What a plan is judged by in the end. With slack, all longest routes within it are equal.
+    fn rank(&self, plan: &State) -> Rank {
+        let has_max = self.options.goal == Goal::Max && self.options.slack == 0.0;
+        let objective = if has_max { Objective::longest_route(self.network, plan) } else { self.total_objective(plan) };
+        objective.rank(plan)
     }
 
     /// Evens out the routes of a plan, if the longest can still become shorter, and that counts.

@@ -77,6 +77,10 @@ impl Objective {
 /// By how much sums of the same legs differ at most, after many changes.
 const ROUNDING: f64 = 1e-8;
 
+fn is_about(one: f64, other: f64) -> bool {
+    (one - other).abs() <= ROUNDING * other
+}
+
 /// How good a plan is: less is better, the fields in falling order of importance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rank {
@@ -92,8 +96,12 @@ impl Rank {
 
     /// Whether this is equal to `other` but for rounding.
     pub fn is_about(&self, other: &Self) -> bool {
-        let is_near = |one: f64, other: f64| (one - other).abs() <= ROUNDING * other;
-        is_near(self.longest, other.longest) && is_near(self.total, other.total)
+        is_about(self.longest, other.longest) && is_about(self.total, other.total)
+    }
+
+    /// Whether this is better than `other`, and not only by rounding.
+    pub fn is_clearly_better(&self, other: &Self) -> bool {
+        if is_about(self.longest, other.longest) { self.total < other.total } else { self.longest < other.longest }
     }
 
     /// Whether this is better than `other`.
@@ -131,12 +139,14 @@ impl Recreate {
     ) -> bool {
         self.order(network, removed, random);
         let mut longest = state.max_route_cost();
+        let mut longest_end = longest_end(network, state);
         for &(_, visit) in &self.keyed {
             let blinks = Blinks { salt: random.bits(), route_limit: self.route_blink };
-            let Some(place) = cheapest_place(network, state, visit, objective, airspace, &blinks) else {
+            let Some(place) = cheapest_place(network, state, visit, objective, airspace, &blinks, longest_end) else {
                 return false;
             };
             state.insert(network, visit, &place, touched);
+            longest_end = end_after(network, state, visit, longest_end);
             let route = state.nodes[visit as usize].route;
             airspace.assign(visit, route);
             longest = longest.max(state.route_costs[route as usize]);
@@ -170,7 +180,28 @@ impl Recreate {
     }
 }
 
-/// Finds where `visit` costs least; nowhere if every place tried would break the cap.
+/// No leg from or to the depot is longer; infinite where a route is empty, or where only some of many routes are tried.
+fn longest_end(network: &Network, state: &State) -> f64 {
+    if network.num_routes > MAX_DEPOT_ENDS as usize {
+        return f64::INFINITY;
+    }
+    let depots = &state.nodes[network.num_visits..];
+    let is_empty = |(depot, node): (usize, &Node)| node.next as usize == depot;
+    if (network.num_visits..).zip(depots).any(is_empty) {
+        return f64::INFINITY;
+    }
+    depots.iter().fold(0.0, |longest, node| greater(longest, greater(node.legs[BEFORE], node.legs[AFTER])))
+}
+
+/// The same, now that `visit` is in.
+fn end_after(network: &Network, state: &State, visit: u32, longest_end: f64) -> f64 {
+    let node = &state.nodes[visit as usize];
+    let is_end = node.previous.max(node.next) as usize >= network.num_visits;
+    if is_end { longest_end.max(network.depot_legs[visit as usize]) } else { longest_end }
+}
+
+/// Finds where `visit` costs least; nowhere if every place tried would break the cap. No leg at the depot is longer than
+/// `longest_end`.
 fn cheapest_place(
     network: &Network,
     state: &State,
@@ -178,6 +209,7 @@ fn cheapest_place(
     objective: &Objective,
     airspace: &mut impl Airspace,
     blinks: &Blinks,
+    longest_end: f64,
 ) -> Option<Place> {
     let overflow_price = OVERFLOW_PRICES[(blinks.salt >> 63) as usize];
     let insertion = Insertion::new(network, visit, objective.target, overflow_price);
@@ -199,6 +231,9 @@ fn cheapest_place(
     // Beside a near neighbour the ends of the routes were tried too; others are at least `reach` away.
     let leg = network.depot_legs[visit as usize];
     let least = leg + reach + insertion.service;
+    if least - longest_end >= cheapest.price {
+        return cheapest.place;
+    }
     let num_routes = network.num_routes as u32;
     let first = if num_routes > MAX_DEPOT_ENDS { (blinks.salt >> 32) as u32 % num_routes } else { 0 };
     for offset in 0..num_routes {
@@ -323,8 +358,11 @@ impl Blinks {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generate::{Variant, generate};
     use crate::geometry::Point;
     use crate::problem::Problem;
+    use crate::search::airspace::SharedAirspace;
+    use proptest::prelude::*;
 
     /// A limit that may be used up must not be pulled down by the plans on the way.
     #[test]
@@ -337,5 +375,52 @@ mod tests {
         assert!((longest.aimed_at(&apart).target - 6.0).abs() < 1e-12);
         assert!((longest.aimed_at(&apart).aimed_at(&together).target - 6.0).abs() < 1e-12);
         assert!((Objective::total_within(9.0).aimed_at(&apart).target - 9.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn equal_longest_routes_are_judged_by_the_total() {
+        let rank = |longest, total| Rank { longest, total };
+        let (base, rounded) = (rank(2.0, 9.0), rank(2.0 * (1.0 - 1e-12), 9.5));
+        assert!(rounded.is_better(&base) && !rounded.is_clearly_better(&base) && base.is_clearly_better(&rounded));
+        assert!(rank(1.9, 9.5).is_clearly_better(&base) && !base.is_clearly_better(&rank(1.9, 9.5)));
+        assert!(!base.is_clearly_better(&base));
+    }
+
+    proptest! {
+        /// Leaving out the ends of the routes changes nothing, and the bound holds while visits come in.
+        #[test]
+        fn ends_left_out_are_never_cheapest(
+            (num_ponds, num_routes, seed) in (2_usize..60, 1_usize..7, 0_u64..1000),
+            homes in prop::collection::vec(0_usize..7, 60),
+            num_removed in 1_usize..12,
+        ) {
+            let farm = generate(num_ponds, Variant::Authors, seed).unwrap();
+            let mut network = Network::new(&Problem::research(farm.depot, &farm.ponds, num_routes).unwrap());
+            network.find_neighbours();
+            let mut routes = vec![Vec::new(); network.num_routes];
+            for (visit, home) in homes[..num_ponds].iter().enumerate() {
+                routes[home % network.num_routes].push(visit as u32);
+            }
+            let (mut state, mut touched) = (State::new(&network, &routes), Touched::default());
+            let objective = Objective::longest_route(&network, &state);
+            let removed: Vec<u32> = (0..num_removed.min(num_ponds) as u32).collect();
+            for &visit in &removed {
+                state.remove_string(&network, visit, 1, &mut Vec::new(), &mut touched);
+            }
+            let (mut random, mut bound) = (Random::new(seed), longest_end(&network, &state));
+            for visit in removed {
+                let blinks = Blinks { salt: random.bits(), route_limit: u64::MAX / 20 };
+                let place = |longest_end| {
+                    let airspace = &mut SharedAirspace;
+                    cheapest_place(&network, &state, visit, &objective, airspace, &blinks, longest_end)
+                };
+                let (with, without) = (place(bound), place(f64::INFINITY));
+                prop_assert_eq!(with.map(|place| place.after), without.map(|place| place.after));
+                let Some(place) = with else { return Ok(()) };
+                state.insert(&network, visit, &place, &mut touched);
+                bound = end_after(&network, &state, visit, bound);
+                prop_assert!(longest_end(&network, &state).is_infinite() || longest_end(&network, &state) <= bound);
+            }
+        }
     }
 }
