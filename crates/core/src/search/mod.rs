@@ -6,20 +6,23 @@
 //! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
 //! (`improve`); if the effort allows, a race of several cuts of the sectors (`population`); from the winner, ruin (`ruin`) and
 //! recreate (`recreate`) under annealing (`anneal`), or, with more effort, children of the best plans (`recombine`), annealed
-//! likewise; exchanges that even out the routes (`balance`), for the last of the race and for the plan that is best in the end;
-//! all that for the longest route, then annealing for the total with the longest route as a limit. Threads share their best
-//! plans now and then (`cooperate`). A time too short for all that goes into a rough plan (`rough`): sectors toured along
-//! strips, smoothed without neighbour lists (`smooth`) and balanced.
+//! likewise and given what is better in the other plans (`cycles`, `assemble`); exchanges that even out the routes (`balance`),
+//! for the last of the race, for the children and for the plan that is best in the end; all that for the longest route, then
+//! annealing for the total with the longest route as a limit. Threads share their best plans now and then (`cooperate`). A time
+//! too short for all that goes into a rough plan (`rough`): sectors toured along strips, smoothed without neighbour lists
+//! (`smooth`) and balanced.
 //!
 //! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
 //! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
 
 mod airspace;
 mod anneal;
+mod assemble;
 mod balance;
 mod budget;
 mod construct;
 mod cooperate;
+mod cycles;
 mod improve;
 mod network;
 mod population;

@@ -2,16 +2,18 @@
 //!
 //! Which start leads to the best plan cannot be seen from it, so that many are improved a little and the better half goes on.
 //! What is left are the parents: two of them make a child ([`super::recombine`]), which is annealed for a while, takes what is
-//! better in the other plans, and replaces a worse one. After Prins, Computers & Operations Research 2004, whose memetic
-//! algorithm improves every child by local search.
+//! better in the other plans ([`super::assemble`]), is evened out, and replaces a worse one. After Prins, Computers & Operations
+//! Research 2004, whose memetic algorithm improves every child by local search.
 
 use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
+use super::assemble::assemble;
+use super::balance::balance;
 use super::budget::Effort;
 use super::construct::Sweep;
-use super::recombine::{blend, cross};
+use super::recombine::cross;
 use super::recreate::Objective;
-use super::state::State;
+use super::state::{RouteCosts, State};
 use super::{MAX_HEAT, Search, improve_routes};
 use crate::random::Random;
 
@@ -27,9 +29,9 @@ const RACE_STEPS_PER_VISIT: f64 = 5.0;
 const START_STEPS_PER_VISIT: f64 = 0.3;
 /// Steps per visit of the whole effort from which on several plans with children are better than one that is annealed longer:
 /// at least the first, and the second times the number of visits.
-const CHILDREN_STEPS_PER_VISIT: (f64, f64) = (100.0, 0.4);
+const CHILDREN_STEPS_PER_VISIT: (f64, f64) = (60.0, 0.2);
 /// Steps per visit of the whole effort for one more parent.
-const STEPS_PER_VISIT_AND_PARENT: f64 = 100.0;
+const STEPS_PER_VISIT_AND_PARENT: f64 = 30.0;
 /// Parents, if there are children.
 const MIN_PARENTS: usize = 4;
 const MAX_PARENTS: usize = 16;
@@ -37,6 +39,9 @@ const MAX_PARENTS: usize = 16;
 const CHILD_STEPS_PER_VISIT: f64 = 10.0;
 /// Share of the effort for one child, at least: with more children they become alike before the effort is used.
 const MIN_CHILD_SHARE: f64 = 0.006;
+/// Parts of other plans are first judged by the sum of this power of the routes' costs: low enough for a longer route to be
+/// taken for a shorter total, high enough for what is gained not to be lost when the routes are evened out.
+const CROWDING_POWER: i32 = 16;
 /// Temperatures relative to the longest route.
 const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
 const CHILD_HEAT: (f64, f64) = (MAX_HEAT.0, RACE_HEAT.1);
@@ -161,17 +166,56 @@ impl Population {
 
     /// Gives `child` what is better in the others, and puts it in the place of the worst, if it is better.
     fn take(&mut self, search: &Search<'_>, mut child: Chain<SharedAirspace>) {
-        for other in &self.chains {
-            if let Some(better) = blend(search.network, &child.best, &other.best, &child.objective) {
-                child.adopt(&better);
-            }
-        }
+        self.enrich(search, &mut child);
         let is_known = self.chains.iter().any(|other| other.best_rank.is_about(&child.best_rank));
         let last = self.chains.len() - 1;
         if !is_known && child.best_rank.is_better(&self.chains[last].best_rank) {
             self.chains[last] = child;
             sort(&mut self.chains);
         }
+    }
+
+    /// Puts into `child` what is better in the others: first what makes it shorter, though a route may become too long, because
+    /// the routes can be evened out afterwards; then what makes it better as it is.
+    fn enrich(&mut self, search: &Search<'_>, child: &mut Chain<SharedAirspace>) {
+        let objective = child.objective;
+        let crowding = |costs: &[f64]| costs.iter().map(|cost| (cost / objective.target).powi(CROWDING_POWER)).sum();
+        let mut is_balanced = false;
+        if let Some(mut shorter) = self.assemble_all(search, &child.best, objective.target, crowding) {
+            balance(search.network, search.budget, &mut shorter);
+            if objective.value(&shorter) < objective.value(&child.best) {
+                child.adopt(&shorter);
+                is_balanced = true;
+            }
+        }
+        let value = |costs: &[f64]| objective.value_of(RouteCosts::of(costs));
+        if let Some(better) = self.assemble_all(search, &child.best, objective.target, value) {
+            child.adopt(&better);
+            is_balanced = false;
+        }
+        if !is_balanced {
+            search.balance(child);
+        }
+    }
+
+    /// `base` with all in the plans that makes it better by `value`; `None` if there is nothing.
+    fn assemble_all(
+        &mut self,
+        search: &Search<'_>,
+        base: &State,
+        target: f64,
+        value: impl Fn(&[f64]) -> f64,
+    ) -> Option<State> {
+        let mut assembled: Option<State> = None;
+        for donor in &self.chains {
+            if search.budget.is_time_over() {
+                break;
+            }
+            let base = assembled.as_ref().unwrap_or(base);
+            let better = assemble(search.network, base, &donor.best, target, &value, &mut self.random);
+            assembled = better.or(assembled);
+        }
+        assembled
     }
 }
 

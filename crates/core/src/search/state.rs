@@ -59,6 +59,13 @@ pub(crate) struct RouteCosts {
     pub total: f64,
 }
 
+impl RouteCosts {
+    /// Of routes that cost this each.
+    pub fn of(costs: &[f64]) -> Self {
+        Self { longest: costs.iter().copied().fold(0.0, f64::max), total: costs.iter().sum() }
+    }
+}
+
 /// Which parts of a state one step touched; members may repeat.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touched {
