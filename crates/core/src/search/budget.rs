@@ -84,6 +84,11 @@ impl<'a> Effort<'a> {
         self.budget.share(self.num_iterations)
     }
 
+    /// Share of the effort that as many more steps would use, if they took as long as those made: infinite before the first.
+    pub fn share_of_steps(&self, num_steps: f64) -> f64 {
+        if self.num_iterations == 0 { f64::INFINITY } else { self.share() * num_steps / self.num_iterations as f64 }
+    }
+
     /// Counts steps, after which the longest route of the plan at work costs `max_route_cost`; tells the watch now and then.
     pub fn add(&mut self, num_steps: u64, max_route_cost: f64) {
         self.num_iterations += num_steps;

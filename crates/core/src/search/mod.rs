@@ -7,10 +7,10 @@
 //! (`improve`); if the effort allows, a race of several cuts of the sectors (`population`); from the winner, ruin (`ruin`) and
 //! recreate (`recreate`) under annealing (`anneal`), or, with more effort, children of the best plans (`recombine`), annealed
 //! likewise and given what is better in the other plans (`cycles`, `assemble`); exchanges that even out the routes (`balance`),
-//! for the last of the race, for the children and for the plan that is best in the end; all that for the longest route, then
-//! annealing for the total with the longest route as a limit. Threads share their best plans now and then (`cooperate`). A time
-//! too short for all that goes into a rough plan (`rough`): sectors toured along strips, smoothed without neighbour lists
-//! (`smooth`) and balanced.
+//! for the last of the race, for the children and for the plan that is best in the end, which is first made shorter by deep
+//! moves over all routes (`lin_kernighan`, `moves`); all that for the longest route, then annealing for the total with the
+//! longest route as a limit. Threads share their best plans now and then (`cooperate`). A time too short for all that goes into
+//! a rough plan (`rough`): sectors toured along strips, smoothed without neighbour lists (`smooth`) and balanced.
 //!
 //! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
 //! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
@@ -24,6 +24,8 @@ mod construct;
 mod cooperate;
 mod cycles;
 mod improve;
+mod lin_kernighan;
+mod moves;
 mod network;
 mod population;
 mod recombine;
@@ -43,6 +45,7 @@ pub use budget::{Clock, Progress, Watch};
 use construct::Sweep;
 pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap, pseudo_angle};
 use cooperate::Meeting;
+use lin_kernighan::shorten;
 pub(crate) use network::Network;
 use population::Population;
 pub(crate) use recreate::Objective;
@@ -111,6 +114,12 @@ const MEETINGS: [f64; 2] = [0.5, 0.7];
 const MAX_END: f64 = 0.88;
 /// How long it takes to find neighbours and to do better with them than without, in times of making a rough plan.
 const NEIGHBOURS_COST: f64 = 28.0;
+/// How much longer than the longest a route may become, as a share, while a plan is shortened, before it is evened out again.
+const ALLOWANCES: [f64; 2] = [0.1, 0.02];
+/// Steps per visit that take as long as refining a plan, and the share of the effort that it may take: in less time, steps gain
+/// more.
+const REFINE_STEPS_PER_VISIT: f64 = 4.0;
+const MAX_REFINE_SHARE: f64 = 0.2;
 /// Temperatures relative to the longest route.
 const MAX_HEAT: (f64, f64) = (1e-2, 1e-6);
 const TOTAL_HEAT: (f64, f64) = (3e-3, 3e-6);
@@ -182,19 +191,30 @@ impl Search<'_> {
             }
         }
         let mut chain = population.into_best();
-        let begin = effort.share();
-        self.balance(&mut chain);
-        chain.restart(self.total_objective(&chain.best));
-        // What is shortened leaves room for visits of the longest route, if there is time to hand them on once more.
-        let is_handed_on = self.options.slack == 0.0;
-        let end = if is_handed_on { 1.0 - (effort.share() - begin) } else { 1.0 };
-        let schedule = Schedule::scaled(effort.share(), end, TOTAL_HEAT, chain.best.max_route_cost());
-        effort.longest_elsewhere = f64::INFINITY;
-        chain.anneal(self.network, &mut effort, &schedule, end, 0.0);
-        if is_handed_on {
-            self.balance(&mut chain);
-        }
+        self.finish(&mut chain, &mut effort);
         (chain.best, effort.num_iterations)
+    }
+
+    /// Makes the most of the plan that is best: shortens it and evens it out, then works on the total.
+    fn finish(&self, chain: &mut Chain<SharedAirspace>, effort: &mut Effort<'_>) {
+        if effort.share_of_steps(REFINE_STEPS_PER_VISIT * self.network.num_visits as f64) <= MAX_REFINE_SHARE {
+            self.refine(chain);
+        } else {
+            self.balance(chain);
+        }
+        effort.longest_elsewhere = f64::INFINITY;
+        let halves = [(effort.share() + 1.0) / 2.0, 1.0];
+        // With slack, the longest route must not be shortened again.
+        let ends = if self.options.slack == 0.0 { &halves[..] } else { &halves[1..] };
+        for &end in ends {
+            chain.restart(self.total_objective(&chain.best));
+            let schedule = Schedule::scaled(effort.share(), end, TOTAL_HEAT, chain.best.max_route_cost());
+            chain.anneal(self.network, effort, &schedule, end, 0.0);
+            if end < 1.0 {
+                // Routes that became shorter have room for visits of the longest one.
+                self.balance(chain);
+            }
+        }
     }
 
     /// What a plan is judged by in the end. With slack, all longest routes within it are equal.
@@ -211,6 +231,26 @@ impl Search<'_> {
             if balance(self.network, self.budget, &mut state) {
                 chain.adopt(&state);
             }
+        }
+    }
+
+    /// Shortens a plan and evens it out in turn, if the longest route can still become shorter, and that counts.
+    fn refine(&self, chain: &mut Chain<SharedAirspace>) {
+        if chain.best.max_route_cost() <= self.floor().max(self.goal_cap()) {
+            return;
+        }
+        let (mut state, mut best) = (chain.best.clone(), chain.best.clone());
+        let mut links = Vec::new();
+        for allowance in ALLOWANCES {
+            let cap = state.max_route_cost() * (1.0 + allowance);
+            shorten(self.network, self.budget, &mut state, cap, &mut links);
+            balance(self.network, self.budget, &mut state);
+            if state.max_route_cost() < best.max_route_cost() {
+                best.clone_from(&state);
+            }
+        }
+        if best.max_route_cost() < chain.best.max_route_cost() {
+            chain.adopt(&best);
         }
     }
 
