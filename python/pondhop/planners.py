@@ -59,7 +59,7 @@ class Effort:
     iterations
         Steps of the search, in place of a time limit or beside one; plans drawn where ``decoding`` is ``sampling``.
     slack_percent
-        How much the longest route may grow to shorten the total.
+        How much the longest route may grow to shorten the total, within the time a drone can be under way.
     objective
         ``max``: the longest route, then the total; ``total``: the total.
     start

@@ -183,10 +183,25 @@ fn limits_hold_where_the_total_is_the_goal() {
     let options = Options { goal: Goal::Total, ..iterations(20_000) };
     let limited = plan(&farm_of(&ponds.ponds, ponds.depot, max_duration), &options);
     assert!(limited.is_feasible(), "{:?}", limited.violations);
+    let stretched = plan(&farm_of(&ponds.ponds, ponds.depot, max_duration), &Options { slack: 0.5, ..options });
+    assert!(stretched.is_feasible(), "{:?}", stretched.violations);
     assert!(limited.total_length() < balanced.total_length());
     let free = plan(&farm_of(&ponds.ponds, ponds.depot, f64::INFINITY), &options);
     assert_eq!(free.routes.len(), 1);
     assert!(free.total_length() <= limited.total_length());
+}
+
+#[test]
+fn slack_ends_where_the_limit_does() {
+    let ponds = generate(40, Variant::Authors, 2).unwrap();
+    let balanced = plan(&farm_of(&ponds.ponds, ponds.depot, f64::INFINITY), &iterations(20_000));
+    let max_duration = 1.05 * balanced.makespan();
+    for num_threads in [1, 3] {
+        let options = Options { slack: 0.5, num_threads, ..iterations(20_000) };
+        let stretched = plan(&farm_of(&ponds.ponds, ponds.depot, max_duration), &options);
+        assert!(stretched.is_feasible(), "{:?}", stretched.violations);
+        assert!(stretched.total_length() < balanced.total_length());
+    }
 }
 
 fn farm_of(ponds: &[Point], depot: Point, max_duration: f64) -> Problem {

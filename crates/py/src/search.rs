@@ -29,7 +29,7 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 /// threads
 ///     Chains that search side by side and share their best plans.
 /// slack
-///     How much the longest route may grow, as a share, to shorten the total.
+///     How much the longest route may grow, as a share, to shorten the total, within the time a drone can be under way.
 /// objective
 ///     ``"max"``: the longest route, then the total; ``"total"``: the total, within the time a drone can be under way.
 /// start

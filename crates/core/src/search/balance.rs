@@ -12,11 +12,12 @@
 //! set found. All routes are smoothed before, those changed by a set after it, and sets follow each other until nothing is
 //! gained.
 //!
-//! Smoothing costs O(visits), one set O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a
+//! Smoothing costs O(n) for its buffers and about O(visits), one set O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a
 //! bounded number of sets tried.
 
 use super::budget::Budget;
 use super::construct::improve_route;
+use super::improve::Room;
 use super::network::Network;
 use super::state::{AFTER, BEFORE, State, Touched};
 
@@ -67,8 +68,12 @@ impl Exchange {
 /// whether it did anything.
 pub(super) fn balance(network: &Network, budget: &Budget<'_>, state: &mut State) -> bool {
     let mut has_changed = false;
+    let mut room = Room::new(network);
     for route in 0..network.num_routes {
-        has_changed |= smooth(network, budget, state, route, |_| true);
+        if budget.is_time_over() {
+            break;
+        }
+        has_changed |= smooth(network, budget, state, route, |_| true, &mut room);
     }
     for _ in 0..MAX_ROUNDS {
         let Some(set) = Sets::new(network, state).best(budget) else { break };
@@ -79,7 +84,7 @@ pub(super) fn balance(network: &Network, budget: &Budget<'_>, state: &mut State)
         touched.routes.sort_unstable();
         touched.routes.dedup();
         for &route in &touched.routes {
-            smooth(network, budget, state, route as usize, |visit| touched.nodes.contains(&visit));
+            smooth(network, budget, state, route as usize, |visit| touched.nodes.contains(&visit), &mut room);
         }
         has_changed = true;
     }
@@ -93,10 +98,11 @@ fn smooth(
     state: &mut State,
     route: usize,
     is_new: impl Fn(u32) -> bool,
+    room: &mut Room,
 ) -> bool {
     let mut visits = state.route(network, route);
     let queue = visits.iter().rev().copied().filter(|&visit| is_new(visit)).collect();
-    let has_moved = improve_route(network, budget, &mut visits, queue);
+    let has_moved = improve_route(network, budget, &mut visits, queue, room);
     if has_moved {
         state.replace_route(network, route, &visits);
     }
@@ -468,11 +474,14 @@ mod tests {
 
     #[test]
     fn without_time_nothing_is_changed() {
-        let ponds: Vec<Point> = (-3..=3).map(|x| Point::new(f64::from(x), 10.0)).collect();
-        let network = network(Point::new(0.0, 0.0), &ponds, 3);
-        let mut state = State::new(&network, &[vec![0, 1, 2], vec![3, 4, 5], vec![6]]);
+        let ponds: Vec<Point> = (-5..=5).map(|x| Point::new(f64::from(x), 10.0)).collect();
+        let network = network(Point::new(0.0, 0.0), &ponds, 2);
+        // Not evened out, and not in their order.
+        let routes = [vec![0, 2, 1, 4, 3, 6, 5], vec![7, 9, 8, 10]];
+        let mut state = State::new(&network, &routes);
         assert!(!balance(&network, &Budget::new(None, Some(&|| 1.0), None), &mut state));
-        assert_eq!(state.routes(&network), [vec![0, 1, 2], vec![3, 4, 5], vec![6]]);
+        assert_eq!(state.routes(&network), routes);
+        assert!(balance(&network, &unlimited(), &mut state));
     }
 
     fn assert_costs_are_those_of_the_routes(network: &Network, state: &State) {

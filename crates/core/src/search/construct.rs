@@ -8,7 +8,7 @@
 //! from the sectors, so the search starts from several cuts. O(n log n).
 
 use super::budget::Budget;
-use super::improve::improve_ring;
+use super::improve::{Room, improve_ring};
 use super::network::Network;
 use crate::geometry::Point;
 
@@ -79,17 +79,24 @@ pub(crate) fn open_at_best_leg(network: &Network, route: &mut [u32]) {
 
 /// Improves each route on its own by 2-opt and Or-opt, and stops between two moves when the time is over.
 pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
+    let mut room = Room::new(network);
     for visits in routes {
         let queue = visits.iter().rev().copied().collect();
-        improve_route(network, budget, visits, queue);
+        improve_route(network, budget, visits, queue, &mut room);
     }
 }
 
 /// Improves one route, from the visits of it that are in `queue`. Returns whether it did anything.
-pub(super) fn improve_route(network: &Network, budget: &Budget<'_>, visits: &mut Vec<u32>, queue: Vec<u32>) -> bool {
+pub(super) fn improve_route(
+    network: &Network,
+    budget: &Budget<'_>,
+    visits: &mut Vec<u32>,
+    queue: Vec<u32>,
+    room: &mut Room,
+) -> bool {
     let depot = network.num_visits as u32;
     visits.push(depot);
-    let has_moved = improve_ring(network, budget, visits, queue);
+    let has_moved = improve_ring(network, budget, visits, queue, room);
     let place = visits.iter().position(|&node| node == depot).unwrap_or(0);
     visits.rotate_left(place);
     visits.remove(0);

@@ -59,7 +59,10 @@ pub(super) fn alternating_cycles(base: &[[Link; 2]], donor: &[[Link; 2]], random
             path.places[start][0] = Some(0);
             loop {
                 let side = path.legs.len() % 2;
-                let Some(Link { leg, to }) = odd_links[side].draw(at, random) else { return cycles };
+                let Some(Link { leg, to }) = odd_links[side].draw(at, random) else {
+                    path.give_up();
+                    break;
+                };
                 path.legs.push(OddLeg { ends: [at, to], leg, is_of_base: side == 0 });
                 at = to;
                 if let Some(cycle) = path.cut_loop(at) {
@@ -83,6 +86,13 @@ struct Path {
 }
 
 impl Path {
+    /// Leaves out the legs walked: nothing leads on from the depot.
+    fn give_up(&mut self) {
+        for node in self.legs.drain(..).flat_map(|odd_leg| odd_leg.ends) {
+            self.places[node as usize] = [None; 2];
+        }
+    }
+
     /// The even loop that was closed by coming to `node`, which is then no longer part of the path.
     fn cut_loop(&mut self, node: u32) -> Option<Vec<OddLeg>> {
         let place = &mut self.places[node as usize][self.legs.len() % 2];
@@ -222,6 +232,18 @@ mod tests {
     fn a_plan_and_its_mirror_image_do_not_differ() {
         let network = network(4, 2);
         assert!(cycles_between(&network, &[vec![0, 1, 2], vec![3]], &[vec![3], vec![2, 1, 0]], 1).is_empty());
+    }
+
+    /// The donor has one route less: what ends at the depot cannot be closed, the two visits in another order can.
+    #[test]
+    fn what_cannot_be_closed_is_left_out_alone() {
+        let network = network(6, 2);
+        for seed in 0..16 {
+            let cycles = cycles_between(&network, &[vec![0, 1, 2, 3, 5], vec![4]], &[vec![0, 2, 1, 3, 5, 4]], seed);
+            let [cycle] = cycles.as_slice() else { panic!("{cycles:?}") };
+            assert_alternates_and_closes(cycle);
+            assert!(cycle.iter().flat_map(|odd_leg| odd_leg.ends).all(|end| end < 4));
+        }
     }
 
     fn routes_of(homes: &[usize], order: &[usize], num_routes: usize) -> Vec<Vec<u32>> {

@@ -16,31 +16,48 @@ const VISITS_PER_LOOK: usize = 32;
 /// What a move must gain, relative to the leg it starts from: above rounding, so that moves cannot undo each other for ever.
 const MIN_GAIN: f64 = 1e-9;
 
+/// Room for the places of the nodes of one ring at a time: made once, because it is as large as the farm.
+pub(crate) struct Room {
+    /// Place of every node on the ring, or [`ELSEWHERE`].
+    position: Vec<u32>,
+    is_queued: Vec<bool>,
+}
+
+impl Room {
+    pub fn new(network: &Network) -> Self {
+        let num_nodes = network.points.len();
+        Self { position: vec![ELSEWHERE; num_nodes], is_queued: vec![false; num_nodes] }
+    }
+}
+
 struct Ring<'a> {
     network: &'a Network,
     order: &'a mut [u32],
-    /// Place of every node in `order`, or [`ELSEWHERE`].
-    position: Vec<u32>,
+    position: &'a mut [u32],
     queue: Vec<u32>,
-    is_queued: Vec<bool>,
+    is_queued: &'a mut [bool],
 }
 
 /// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
 /// it or the time is over. Looks at `queue` first, the last of it first, and else only at what its moves touch: all visits that
 /// such a move might begin at. Returns whether it did anything.
-pub(crate) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [u32], queue: Vec<u32>) -> bool {
-    if order.len() < 5 {
+pub(crate) fn improve_ring(
+    network: &Network,
+    budget: &Budget<'_>,
+    order: &mut [u32],
+    queue: Vec<u32>,
+    room: &mut Room,
+) -> bool {
+    if order.len() < 5 || budget.is_time_over() {
         return false;
     }
-    let mut position = vec![ELSEWHERE; network.points.len()];
     for (place, &node) in order.iter().enumerate() {
-        position[node as usize] = place as u32;
+        room.position[node as usize] = place as u32;
     }
-    let mut is_queued = vec![false; network.points.len()];
     for &visit in &queue {
-        is_queued[visit as usize] = true;
+        room.is_queued[visit as usize] = true;
     }
-    let mut ring = Ring { network, order, position, queue, is_queued };
+    let mut ring = Ring { network, order, position: &mut room.position, queue, is_queued: &mut room.is_queued };
     let (mut num_looked_at, mut has_moved) = (0usize, false);
     while let Some(visit) = ring.queue.pop() {
         ring.is_queued[visit as usize] = false;
@@ -51,6 +68,10 @@ pub(crate) fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [
         if num_looked_at.is_multiple_of(VISITS_PER_LOOK) && budget.is_time_over() {
             break;
         }
+    }
+    for &node in ring.order.iter() {
+        ring.position[node as usize] = ELSEWHERE;
+        ring.is_queued[node as usize] = false;
     }
     has_moved
 }

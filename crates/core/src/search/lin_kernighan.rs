@@ -18,7 +18,7 @@
 use super::budget::Budget;
 use super::moves::{Cut, MAX_CUTS, Move};
 use super::network::{Network, leg_of_length};
-use super::state::State;
+use super::state::{AFTER, BEFORE, State};
 use crate::geometry::Point;
 
 /// Ways to go on that are tried after each cut but the last; after the last but one, a move is only closed.
@@ -31,13 +31,11 @@ const PRICE: f64 = 0.3;
 const MIN_GAIN: f64 = 1e-9;
 /// Nodes looked at between two looks at the clock.
 const NODES_PER_LOOK: usize = 16;
-const BACK: usize = 0;
-const FORTH: usize = 1;
 
 /// A node on its route.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
-struct Place {
+struct RouteNode {
     x: f64,
     y: f64,
     /// Legs back and forth, and where they lead.
@@ -61,9 +59,9 @@ struct Extension {
 }
 
 /// A plan whose pieces can be priced by where they begin and end.
-struct Plan<'a> {
+struct Routes<'a> {
     network: &'a Network,
-    places: Vec<Place>,
+    places: Vec<RouteNode>,
     /// A copy of the depot, then the visits, per route.
     routes: Vec<Vec<u32>>,
     costs: Vec<f64>,
@@ -91,7 +89,7 @@ pub(super) fn shorten(
     cap: f64,
     links: &mut Vec<[u32; 2]>,
 ) -> bool {
-    let mut plan = Plan::new(network, state, cap);
+    let mut plan = Routes::new(network, state, cap);
     plan.queue_changed(links);
     let mut num_looked_at = 0_usize;
     while let Some(node) = plan.queue.pop() {
@@ -110,9 +108,10 @@ pub(super) fn shorten(
     plan.is_changed.contains(&true)
 }
 
-impl<'a> Plan<'a> {
+impl<'a> Routes<'a> {
     fn new(network: &'a Network, state: &State, cap: f64) -> Self {
-        let place = |(point, &service): (&Point, &f64)| Place { x: point.x, y: point.y, service, ..Place::default() };
+        let place =
+            |(point, &service): (&Point, &f64)| RouteNode { x: point.x, y: point.y, service, ..RouteNode::default() };
         let mean = state.total / network.num_routes as f64;
         let mut plan = Self {
             network,
@@ -148,12 +147,12 @@ impl<'a> Plan<'a> {
                 cost += leg + place.service;
             }
             (place.cost, place.route, place.position) = (cost, route as u32, position as u32);
-            (place.links[BACK], place.legs[BACK]) = (last, leg);
+            (place.links[BEFORE], place.legs[BEFORE]) = (last, leg);
             let place = &mut self.places[last as usize];
-            (place.links[FORTH], place.legs[FORTH]) = (node, leg);
+            (place.links[AFTER], place.legs[AFTER]) = (node, leg);
             last = node;
         }
-        self.costs[route] = cost + self.places[last as usize].legs[FORTH];
+        self.costs[route] = cost + self.places[last as usize].legs[AFTER];
     }
 
     fn queue_changed(&mut self, links: &[[u32; 2]]) {
@@ -193,10 +192,10 @@ impl<'a> Plan<'a> {
         let place = &self.places[node as usize];
         let to = place.links[usize::from(is_forth)];
         let (position, head, leg) = if is_forth {
-            (place.position, place.cost, place.legs[FORTH])
+            (place.position, place.cost, place.legs[AFTER])
         } else {
             let before = &self.places[to as usize];
-            (before.position, before.cost, before.legs[FORTH])
+            (before.position, before.cost, before.legs[AFTER])
         };
         Cut { route: place.route, position, from: node, to, is_forth, head, head_and_leg: head + leg, added }
     }
@@ -471,7 +470,7 @@ mod tests {
             prop_assert_eq!(is_changed, value(&state) < before - 1e-12);
         }
 
-        /// With nine visits, all others are near neighbours; legs to the depot are only added to close a move.
+        /// With so few visits, all others are near neighbours; legs to the depot are only added to close a move.
         #[test]
         fn afterwards_no_stretch_between_visits_is_shorter_turned(
             (num_ponds, num_routes, seed) in (4_usize..9, 1_usize..4, 0_u64..1000),

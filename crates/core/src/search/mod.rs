@@ -72,13 +72,14 @@ pub struct Options<'a> {
     pub max_iterations: Option<u64>,
     /// Share of the time limit used so far.
     pub clock: Option<Clock<'a>>,
-    /// Told how far the first thread is; may end the search.
+    /// Told how far the threads are; may end the search.
     pub watch: Option<Watch<'a>>,
     /// Chains that search side by side; at least 1.
     pub num_threads: usize,
     /// What to minimise.
     pub goal: Goal,
-    /// How much the longest route may grow, as a share, to shorten the total.
+    /// How much the longest route may grow, as a share, to shorten the total, within the time a drone can be under way. Without
+    /// effect where the total is the goal.
     pub slack: f64,
     /// A plan to begin with: visit indices per route.
     pub start: Option<&'a [Vec<usize>]>,
@@ -141,7 +142,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     }
     network.find_neighbours();
     let search = Search { network: &network, budget: &budget, options, meeting: Meeting::new(options.num_threads) };
-    let runs: Vec<(State, u64)> = std::thread::scope(|scope| {
+    let runs: Vec<Run> = std::thread::scope(|scope| {
         let others: Vec<_> = (1..options.num_threads)
             .map(|thread| {
                 scope.spawn({
@@ -155,11 +156,21 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
             others.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         std::iter::once(first).chain(rest).collect()
     });
-    let num_iterations = runs[0].1;
-    let better =
-        |one: State, other: State| if search.rank(&other).is_clearly_better(&search.rank(&one)) { other } else { one };
-    let best = runs.into_iter().map(|run| run.0).reduce(better);
+    let num_iterations = runs[0].num_iterations;
+    // A longest route that does not matter is as good as any other.
+    let free_cost = runs.iter().map(|run| run.free_cost).fold(f64::INFINITY, f64::min);
+    let rank = |plan: &State| Rank::new(plan.max_route_cost().max(free_cost), plan.total);
+    let better = |one: State, other: State| if rank(&other).is_clearly_better(&rank(&one)) { other } else { one };
+    let best = runs.into_iter().map(|run| run.plan).reduce(better);
     Outcome { routes: best.map_or_else(Vec::new, |best| to_indices(best.routes(&network))), num_iterations }
+}
+
+/// What one thread found.
+struct Run {
+    plan: State,
+    /// Up to which cost its longest route did not matter in the end.
+    free_cost: f64,
+    num_iterations: u64,
 }
 
 /// What the threads of one search share.
@@ -173,7 +184,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// One thread's search: the longest route, by several plans if the effort allows, then the total of the best. Returns the
     /// plan and the number of steps.
-    fn run(&self, thread: usize) -> (State, u64) {
+    fn run(&self, thread: usize) -> Run {
         let mut effort = Effort::new(self.budget);
         let mut population = match (self.options.start, self.options.goal) {
             (Some(routes), _) => Population::single(self.chain_from(&to_nodes(routes), thread as u64)),
@@ -192,7 +203,8 @@ impl Search<'_> {
         }
         let mut chain = population.into_best();
         self.finish(&mut chain, &mut effort);
-        (chain.best, effort.num_iterations)
+        let free_cost = if self.is_lexicographic() { 0.0 } else { chain.objective.cap };
+        Run { plan: chain.best, free_cost, num_iterations: effort.num_iterations }
     }
 
     /// Makes the most of the plan that is best: shortens it and evens it out, then works on the total.
@@ -205,7 +217,7 @@ impl Search<'_> {
         effort.longest_elsewhere = f64::INFINITY;
         let halves = [(effort.share() + 1.0) / 2.0, 1.0];
         // With slack, the longest route must not be shortened again.
-        let ends = if self.options.slack == 0.0 { &halves[..] } else { &halves[1..] };
+        let ends = if self.is_lexicographic() { &halves[..] } else { &halves[1..] };
         for &end in ends {
             chain.restart(self.total_objective(&chain.best));
             let schedule = Schedule::scaled(effort.share(), end, TOTAL_HEAT, chain.best.max_route_cost());
@@ -215,13 +227,6 @@ impl Search<'_> {
                 self.balance(chain);
             }
         }
-    }
-
-    /// What a plan is judged by in the end. With slack, all longest routes within it are equal.
-    fn rank(&self, plan: &State) -> Rank {
-        let has_max = self.options.goal == Goal::Max && self.options.slack == 0.0;
-        let objective = if has_max { Objective::longest_route(self.network, plan) } else { self.total_objective(plan) };
-        objective.rank(plan)
     }
 
     /// Evens out the routes of a plan, if the longest can still become shorter, and that counts.
@@ -240,16 +245,17 @@ impl Search<'_> {
             return;
         }
         let (mut state, mut best) = (chain.best.clone(), chain.best.clone());
+        let rank = |plan: &State| Rank::new(plan.max_route_cost(), plan.total);
         let mut links = Vec::new();
         for allowance in ALLOWANCES {
             let cap = state.max_route_cost() * (1.0 + allowance);
             shorten(self.network, self.budget, &mut state, cap, &mut links);
             balance(self.network, self.budget, &mut state);
-            if state.max_route_cost() < best.max_route_cost() {
+            if rank(&state).is_clearly_better(&rank(&best)) {
                 best.clone_from(&state);
             }
         }
-        if best.max_route_cost() < chain.best.max_route_cost() {
+        if rank(&best).is_clearly_better(&rank(&chain.best)) {
             chain.adopt(&best);
         }
     }
@@ -290,11 +296,19 @@ impl Search<'_> {
         Chain::new(self.network, state, objective, self.seed(stream), SharedAirspace)
     }
 
-    /// Only the total counts, while no route may outgrow the longest one, and the slack it is given.
+    /// Whether a shorter longest route is better, whatever the total.
+    fn is_lexicographic(&self) -> bool {
+        self.options.goal == Goal::Max && self.options.slack == 0.0
+    }
+
+    /// Only the total counts, while no route may outgrow the longest one, and the slack it is given, unless that is more than a
+    /// drone can be under way.
     fn total_objective(&self, state: &State) -> Objective {
+        let longest = state.max_route_cost();
+        let slack = if self.options.goal == Goal::Max { self.options.slack } else { 0.0 };
+        let cap = (longest * (1.0 + slack)).min(longest.max(self.network.max_route_cost));
         // Taking a visit out and putting it back changes the last bits of a route's cost.
-        let longest = state.max_route_cost() * (1.0 + self.options.slack) * (1.0 + 1e-12);
-        Objective::total_within(longest.max(self.goal_cap()))
+        Objective::total_within((cap * (1.0 + 1e-12)).max(self.goal_cap()))
     }
 }
 

@@ -89,6 +89,10 @@ pub(crate) struct Rank {
 }
 
 impl Rank {
+    pub fn new(longest: f64, total: f64) -> Self {
+        Self { longest, total }
+    }
+
     /// Orders two ranks, the better one first.
     pub fn compare(&self, other: &Self) -> Ordering {
         self.longest.total_cmp(&other.longest).then(self.total.total_cmp(&other.total))
@@ -379,11 +383,14 @@ mod tests {
 
     #[test]
     fn equal_longest_routes_are_judged_by_the_total() {
-        let rank = |longest, total| Rank { longest, total };
-        let (base, rounded) = (rank(2.0, 9.0), rank(2.0 * (1.0 - 1e-12), 9.5));
+        let (base, rounded) = (Rank::new(2.0, 9.0), Rank::new(2.0 * (1.0 - 1e-12), 9.5));
         assert!(rounded.is_better(&base) && !rounded.is_clearly_better(&base) && base.is_clearly_better(&rounded));
-        assert!(rank(1.9, 9.5).is_clearly_better(&base) && !base.is_clearly_better(&rank(1.9, 9.5)));
+        assert!(Rank::new(1.9, 9.5).is_clearly_better(&base) && !base.is_clearly_better(&Rank::new(1.9, 9.5)));
         assert!(!base.is_clearly_better(&base));
+        // Where up to 2.5 the longest route does not matter, a plan beyond is worse, whatever its total.
+        let within = |longest: f64, total| Rank::new(longest.max(2.5), total);
+        assert!(within(2.4, 9.0).is_clearly_better(&within(2.0, 9.5)));
+        assert!(within(2.4, 9.0).is_clearly_better(&within(2.6, 8.0)));
     }
 
     proptest! {
