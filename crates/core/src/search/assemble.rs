@@ -254,16 +254,9 @@ impl<'a> Assembly<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::{Variant, generate};
     use crate::geometry::Point;
-    use crate::problem::{Depot, Problem, VehicleType, Visit};
+    use crate::search::testing::{assert_every_visit_once, farm_with_services, research_network, routes_of};
     use proptest::prelude::*;
-
-    fn network(depot: Point, ponds: &[Point], num_routes: usize) -> Network {
-        let mut network = Network::new(&Problem::research(depot, ponds, num_routes).unwrap());
-        network.find_neighbours();
-        network
-    }
 
     fn total(costs: &[f64]) -> f64 {
         costs.iter().sum()
@@ -279,7 +272,7 @@ mod tests {
         let side = [(1.0, 0.0), (2.0, 1.0), (3.0, 0.0), (2.0, -1.0)];
         let ponds: Vec<Point> =
             [1.0, -1.0].into_iter().flat_map(|sign| side.map(|(x, y)| Point::new(sign * x, y))).collect();
-        let network = network(Point::new(0.0, 0.0), &ponds, 2);
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 2);
         let (around, zigzag) = (vec![0, 1, 2, 3], vec![1, 3, 0, 2]);
         let left = |route: &[u32]| route.iter().map(|visit| visit + 4).collect::<Vec<u32>>();
         let one = State::new(&network, &[around.clone(), left(&zigzag)]);
@@ -300,7 +293,7 @@ mod tests {
         let square = [(1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (2.0, 0.0)];
         let ponds: Vec<Point> =
             [0.0, 10.0].into_iter().flat_map(|x| square.map(|(dx, y)| Point::new(x + dx, y))).collect();
-        let network = network(Point::new(0.0, 0.0), &ponds, 1);
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 1);
         let before = vec![0, 1, 5, 6, 7, 4, 2, 3];
         let mut assembly = Assembly::new(&network, &State::new(&network, std::slice::from_ref(&before)), f64::INFINITY);
         let leg = |from, to, is_of_base| OddLeg { ends: [from, to], leg: network.leg(from, to), is_of_base };
@@ -317,20 +310,12 @@ mod tests {
     #[test]
     fn a_cycle_whose_legs_are_gone_is_refused() {
         let ponds: Vec<Point> = (1..=4).map(|x| Point::new(f64::from(x), 0.0)).collect();
-        let network = network(Point::new(0.0, 0.0), &ponds, 1);
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 1);
         let mut assembly = Assembly::new(&network, &State::new(&network, &[vec![0, 1, 2, 3]]), f64::INFINITY);
         let leg = |from, to, is_of_base| OddLeg { ends: [from, to], leg: network.leg(from, to), is_of_base };
         assert!(!assembly.exchange(&[leg(0, 1, true), leg(1, 3, false), leg(3, 1, true), leg(1, 0, false)]));
         assembly.undo();
         assert_eq!(assembly.routes(), [[0, 1, 2, 3]]);
-    }
-
-    fn routes_of(homes: &[usize], num_routes: usize) -> Vec<Vec<u32>> {
-        let mut routes = vec![Vec::new(); num_routes];
-        for (visit, home) in homes.iter().enumerate() {
-            routes[home % num_routes].push(visit as u32);
-        }
-        routes
     }
 
     proptest! {
@@ -341,19 +326,7 @@ mod tests {
             services in prop::collection::vec(0.0_f64..0.3, 60),
             has_stops: bool,
         ) {
-            let mut farm = generate(num_ponds, Variant::Authors, seed).unwrap();
-            if has_stops {
-                // Some ponds lie in one place, or at the depot, where a leg takes no time.
-                let lattice = |point: Point| Point::new((4.0 * point.x).round(), (4.0 * point.y).round());
-                (farm.depot, farm.ponds) = (lattice(farm.depot), farm.ponds.into_iter().map(lattice).collect());
-            }
-            let visits = farm.ponds.iter().zip(&services);
-            let visits = visits.map(|(&position, &service_duration)| Visit { position, service_duration }).collect();
-            let stop = if has_stops { 0.5 } else { 0.0 };
-            let vehicle_type = VehicleType { speed: 2.0, leg_stop_duration: stop, ..VehicleType::unlimited(num_routes) };
-            let problem = Problem::new(Depot { position: farm.depot }, visits, vehicle_type).unwrap();
-            let mut network = Network::new(&problem);
-            network.find_neighbours();
+            let network = farm_with_services(num_ponds, num_routes, seed, &services, has_stops);
             let (one, other): (Vec<usize>, Vec<usize>) = homes[..num_ponds].iter().copied().unzip();
             let [base, donor] = [one, other].map(|homes| State::new(&network, &routes_of(&homes, network.num_routes)));
             let said = std::cell::Cell::new(f64::INFINITY);
@@ -364,9 +337,7 @@ mod tests {
             };
             let target = base.max_route_cost();
             if let Some(better) = assemble(&network, &base, &donor, target, value, &mut Random::new(seed)) {
-                let mut visits: Vec<u32> = better.routes(&network).concat();
-                visits.sort_unstable();
-                prop_assert_eq!(visits, (0..num_ponds as u32).collect::<Vec<_>>());
+                assert_every_visit_once(&network, &better);
                 prop_assert_eq!(better.routes(&network).len(), base.routes(&network).len());
                 let costs: Vec<f64> = better.routes(&network).iter().map(|route| network.route_cost(route)).collect();
                 let found = said.get();

@@ -425,31 +425,19 @@ impl<'a> Sets<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::{Variant, generate};
     use crate::geometry::Point;
-    use crate::problem::{Depot, Problem, VehicleType, Visit};
+    use crate::search::testing::{
+        assert_costs_are_those_of_the_routes, assert_every_visit_once, farm_with_services, research_network, routes_of,
+        unlimited,
+    };
     use proptest::prelude::*;
-
-    fn network(depot: Point, ponds: &[Point], num_routes: usize) -> Network {
-        network_of(&Problem::research(depot, ponds, num_routes).unwrap())
-    }
-
-    fn network_of(problem: &Problem) -> Network {
-        let mut network = Network::new(problem);
-        network.find_neighbours();
-        network
-    }
-
-    fn unlimited() -> Budget<'static> {
-        Budget::new(None, None, None)
-    }
 
     /// Seven ponds in a row north of the depot: 3, 3 and 1. The left route cannot give one to the middle one, which would be
     /// the longest, unless that hands one on.
     #[test]
     fn a_load_is_handed_on_to_a_third_route() {
         let ponds: Vec<Point> = (-3..=3).map(|x| Point::new(f64::from(x), 10.0)).collect();
-        let network = network(Point::new(0.0, 0.0), &ponds, 3);
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 3);
         let mut state = State::new(&network, &[vec![0, 1, 2], vec![3, 4, 5], vec![6]]);
         assert_eq!(Sets::new(&network, &state).best(&unlimited()).unwrap().len(), 2);
         assert!(balance(&network, &unlimited(), &mut state));
@@ -467,7 +455,7 @@ mod tests {
     fn one_route_and_a_route_for_every_pond_stay_as_they_are() {
         let ponds = [1.0, 2.0, 3.0].map(|x| Point::new(x, 0.0));
         for routes in [vec![vec![0, 1, 2]], vec![vec![0], vec![1], vec![2]]] {
-            let network = network(Point::new(0.0, 0.0), &ponds, routes.len());
+            let network = research_network(Point::new(0.0, 0.0), &ponds, routes.len());
             assert!(!balance(&network, &unlimited(), &mut State::new(&network, &routes)));
         }
     }
@@ -475,7 +463,7 @@ mod tests {
     #[test]
     fn without_time_nothing_is_changed() {
         let ponds: Vec<Point> = (-5..=5).map(|x| Point::new(f64::from(x), 10.0)).collect();
-        let network = network(Point::new(0.0, 0.0), &ponds, 2);
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 2);
         // Not evened out, and not in their order.
         let routes = [vec![0, 2, 1, 4, 3, 6, 5], vec![7, 9, 8, 10]];
         let mut state = State::new(&network, &routes);
@@ -484,13 +472,9 @@ mod tests {
         assert!(balance(&network, &unlimited(), &mut state));
     }
 
-    fn assert_costs_are_those_of_the_routes(network: &Network, state: &State) {
-        let mut visits: Vec<u32> = state.routes(network).concat();
-        visits.sort_unstable();
-        assert_eq!(visits, (0..network.num_visits as u32).collect::<Vec<_>>());
-        for (route, &cost) in state.route_costs.iter().enumerate() {
-            assert!((cost - network.route_cost(&state.route(network, route))).abs() < 1e-9);
-        }
+    fn assert_is_sound(network: &Network, state: &State) {
+        assert_every_visit_once(network, state);
+        assert_costs_are_those_of_the_routes(network, state);
     }
 
     /// `state` after `set`, whose routes must cost what the exchanges say.
@@ -501,7 +485,7 @@ mod tests {
             costs[state.nodes[exchange.given.before as usize].route as usize] += exchange.giver_change;
             costs[exchange.taker as usize] += exchange.taker_change;
         }
-        assert_costs_are_those_of_the_routes(network, &after);
+        assert_is_sound(network, &after);
         for (cost, predicted) in after.route_costs.iter().zip(costs) {
             assert!((cost - predicted).abs() < 1e-9, "{set:?}");
         }
@@ -520,21 +504,8 @@ mod tests {
             homes in prop::collection::vec(0_usize..6, 40),
             has_stops: bool,
         ) {
-            let mut farm = generate(num_ponds, Variant::Authors, seed).unwrap();
-            if has_stops {
-                // Some ponds lie in one place, or at the depot, where a leg takes no time.
-                let lattice = |point: Point| Point::new((4.0 * point.x).round(), (4.0 * point.y).round());
-                (farm.depot, farm.ponds) = (lattice(farm.depot), farm.ponds.into_iter().map(lattice).collect());
-            }
-            let visits = farm.ponds.iter().zip(&services);
-            let visits = visits.map(|(&position, &service_duration)| Visit { position, service_duration }).collect();
-            let stop = if has_stops { 0.5 } else { 0.0 };
-            let vehicle_type = VehicleType { speed: 2.0, leg_stop_duration: stop, ..VehicleType::unlimited(num_routes) };
-            let network = network_of(&Problem::new(Depot { position: farm.depot }, visits, vehicle_type).unwrap());
-            let mut routes = vec![Vec::new(); network.num_routes];
-            for (visit, home) in homes[..num_ponds].iter().enumerate() {
-                routes[home % network.num_routes].push(visit as u32);
-            }
+            let network = farm_with_services(num_ponds, num_routes, seed, &services, has_stops);
+            let routes = routes_of(&homes[..num_ponds], network.num_routes);
             let mut state = State::new(&network, &routes);
             let sets = Sets::new(&network, &state);
             for giver in 0..network.num_routes as u32 {
@@ -549,7 +520,7 @@ mod tests {
             }
             let before = state.clone();
             let has_changed = balance(&network, &unlimited(), &mut state);
-            assert_costs_are_those_of_the_routes(&network, &state);
+            assert_is_sound(&network, &state);
             prop_assert!(state.max_route_cost() <= before.max_route_cost() + 1e-9);
             prop_assert_eq!(has_changed, state.routes(&network) != before.routes(&network));
         }

@@ -342,24 +342,17 @@ impl<'a> Routes<'a> {
 mod tests {
     use super::*;
     use crate::generate::{Variant, generate};
-    use crate::problem::{Depot, Problem, VehicleType, Visit};
+    use crate::search::testing::{
+        assert_costs_are_those_of_the_routes, assert_every_visit_once, farm_with_services, research_network, routes_of,
+        unlimited,
+    };
     use proptest::prelude::*;
-
-    fn network_of(problem: &Problem) -> Network {
-        let mut network = Network::new(problem);
-        network.find_neighbours();
-        network
-    }
-
-    fn unlimited() -> Budget<'static> {
-        Budget::new(None, None, None)
-    }
 
     /// Two rows of three ponds, one on either side of the depot's axis; the routes have each other's last pond.
     fn crossed() -> (Network, State) {
         let ponds = [(1.0, 1.0), (2.0, 1.0), (3.0, 1.0), (1.0, -1.0), (2.0, -1.0), (3.0, -1.0)];
         let ponds = ponds.map(|(x, y)| Point::new(x, y));
-        let network = network_of(&Problem::research(Point::new(0.0, 0.0), &ponds, 2).unwrap());
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 2);
         let state = State::new(&network, &[vec![0, 1, 5], vec![3, 4, 2]]);
         (network, state)
     }
@@ -403,7 +396,7 @@ mod tests {
     fn no_move_leaves_visits_on_a_ring_without_a_depot() {
         let ponds = [(0.0, 1.0), (1.0, 1.0), (9.0, 0.0), (9.0, 1.0), (10.0, 1.0), (10.0, 0.0)];
         let ponds = ponds.map(|(x, y)| Point::new(x, y));
-        let network = network_of(&Problem::research(Point::new(0.0, 0.0), &ponds, 1).unwrap());
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 1);
         let mut state = State::new(&network, &[vec![0, 1, 3, 4, 5, 2]]);
         assert!(!shorten(&network, &unlimited(), &mut state, f64::INFINITY, &mut Vec::new()));
     }
@@ -413,7 +406,7 @@ mod tests {
         for ponds in
             [vec![Point::new(1.0, 0.0)], vec![Point::new(0.0, 0.0), Point::new(0.0, 0.0), Point::new(0.0, 0.0)]]
         {
-            let network = network_of(&Problem::research(Point::new(0.0, 0.0), &ponds, 3).unwrap());
+            let network = research_network(Point::new(0.0, 0.0), &ponds, 3);
             let mut state = State::new(&network, &[(0..ponds.len() as u32).collect()]);
             assert!(!shorten(&network, &unlimited(), &mut state, f64::INFINITY, &mut Vec::new()));
         }
@@ -422,7 +415,7 @@ mod tests {
     #[test]
     fn without_time_few_nodes_are_looked_at() {
         let farm = generate(300, Variant::Authors, 1).unwrap();
-        let network = network_of(&Problem::research(farm.depot, &farm.ponds, 1).unwrap());
+        let network = research_network(farm.depot, &farm.ponds, 1);
         let visits: Vec<u32> = (0..300).collect();
         let mut state = State::new(&network, std::slice::from_ref(&visits));
         shorten(&network, &Budget::new(None, Some(&|| 1.0), None), &mut state, f64::INFINITY, &mut Vec::new());
@@ -440,32 +433,15 @@ mod tests {
             allowance in 0.0_f64..0.2,
             has_stops: bool,
         ) {
-            let mut farm = generate(num_ponds, Variant::Authors, seed).unwrap();
-            if has_stops {
-                // Some ponds lie in one place, or at the depot, where a leg takes no time.
-                let lattice = |point: Point| Point::new((4.0 * point.x).round(), (4.0 * point.y).round());
-                (farm.depot, farm.ponds) = (lattice(farm.depot), farm.ponds.into_iter().map(lattice).collect());
-            }
-            let visits = farm.ponds.iter().zip(&services);
-            let visits = visits.map(|(&position, &service_duration)| Visit { position, service_duration }).collect();
-            let stop = if has_stops { 0.5 } else { 0.0 };
-            let vehicle_type = VehicleType { speed: 2.0, leg_stop_duration: stop, ..VehicleType::unlimited(num_routes) };
-            let network = network_of(&Problem::new(Depot { position: farm.depot }, visits, vehicle_type).unwrap());
-            let mut routes = vec![Vec::new(); network.num_routes];
-            for (visit, home) in homes[..num_ponds].iter().enumerate() {
-                routes[home % network.num_routes].push(visit as u32);
-            }
+            let network = farm_with_services(num_ponds, num_routes, seed, &services, has_stops);
+            let routes = routes_of(&homes[..num_ponds], network.num_routes);
             let mut state = State::new(&network, &routes);
             let mean = state.total / network.num_routes as f64;
             let value = |state: &State| state.total + PRICE * state.route_costs.iter().map(|cost| (cost - mean).max(0.0)).sum::<f64>();
             let (before, cap) = (value(&state), state.max_route_cost() * (1.0 + allowance));
             let is_changed = shorten(&network, &unlimited(), &mut state, cap, &mut Vec::new());
-            let mut visits: Vec<u32> = state.routes(&network).concat();
-            visits.sort_unstable();
-            prop_assert_eq!(visits, (0..num_ponds as u32).collect::<Vec<_>>());
-            for (route, &cost) in state.route_costs.iter().enumerate() {
-                prop_assert!((cost - network.route_cost(&state.route(&network, route))).abs() < 1e-9);
-            }
+            assert_every_visit_once(&network, &state);
+            assert_costs_are_those_of_the_routes(&network, &state);
             prop_assert!(state.max_route_cost() <= cap + 1e-9);
             prop_assert_eq!(is_changed, value(&state) < before - 1e-12);
         }
@@ -477,11 +453,8 @@ mod tests {
             homes in prop::collection::vec(0_usize..6, 9),
         ) {
             let farm = generate(num_ponds, Variant::Authors, seed).unwrap();
-            let network = network_of(&Problem::research(farm.depot, &farm.ponds, num_routes).unwrap());
-            let mut routes = vec![Vec::new(); network.num_routes];
-            for (visit, home) in homes[..num_ponds].iter().enumerate() {
-                routes[home % network.num_routes].push(visit as u32);
-            }
+            let network = research_network(farm.depot, &farm.ponds, num_routes);
+            let routes = routes_of(&homes[..num_ponds], network.num_routes);
             let mut state = State::new(&network, &routes);
             while shorten(&network, &unlimited(), &mut state, f64::INFINITY, &mut Vec::new()) {}
             let mean = state.total / network.num_routes as f64;

@@ -34,6 +34,8 @@ mod rough;
 mod ruin;
 mod smooth;
 mod state;
+#[cfg(test)]
+mod testing;
 
 use crate::problem::Problem;
 pub(crate) use airspace::Airspace;
@@ -229,9 +231,14 @@ impl Search<'_> {
         }
     }
 
-    /// Evens out the routes of a plan, if the longest can still become shorter, and that counts.
+    /// Whether the longest route of a plan can still become shorter, and that counts.
+    fn can_be_evened_out(&self, plan: &State) -> bool {
+        plan.max_route_cost() > self.floor().max(self.goal_cap())
+    }
+
+    /// Evens out the routes of a plan, where that can gain anything.
     fn balance(&self, chain: &mut Chain<SharedAirspace>) {
-        if chain.best.max_route_cost() > self.floor().max(self.goal_cap()) {
+        if self.can_be_evened_out(&chain.best) {
             let mut state = chain.best.clone();
             if balance(self.network, self.budget, &mut state) {
                 chain.adopt(&state);
@@ -239,9 +246,9 @@ impl Search<'_> {
         }
     }
 
-    /// Shortens a plan and evens it out in turn, if the longest route can still become shorter, and that counts.
+    /// Shortens a plan and evens it out in turn, where that can gain anything.
     fn refine(&self, chain: &mut Chain<SharedAirspace>) {
-        if chain.best.max_route_cost() <= self.floor().max(self.goal_cap()) {
+        if !self.can_be_evened_out(&chain.best) {
             return;
         }
         let (mut state, mut best) = (chain.best.clone(), chain.best.clone());

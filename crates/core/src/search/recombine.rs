@@ -92,18 +92,13 @@ mod tests {
     use crate::generate::{Variant, generate};
     use crate::geometry::Point;
     use crate::problem::Problem;
+    use crate::search::testing::{self, research_network};
     use crate::search::{Options, solve, to_nodes};
-
-    fn network(depot: Point, ponds: &[Point], num_routes: usize) -> Network {
-        let mut network = Network::new(&Problem::research(depot, ponds, num_routes).unwrap());
-        network.find_neighbours();
-        network
-    }
 
     #[test]
     fn a_giver_with_one_route_makes_a_twin_of_the_keeper() {
         let ponds = [1.0, 2.0, 3.0].map(|x| Point::new(x, 0.0));
-        let network = network(Point::new(0.0, 0.0), &ponds, 2);
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 2);
         let keeper = State::new(&network, &[vec![0, 2], vec![1]]);
         let giver = State::new(&network, &[vec![0, 1, 2]]);
         let child = cross(&network, &keeper, &giver, &mut Random::new(1));
@@ -114,7 +109,7 @@ mod tests {
     fn plans(num_ponds: usize, num_routes: usize) -> (Network, Vec<State>) {
         let farm = generate(num_ponds, Variant::Authors, 5).unwrap();
         let problem = Problem::research(farm.depot, &farm.ponds, num_routes).unwrap();
-        let network = network(farm.depot, &farm.ponds, num_routes);
+        let network = research_network(farm.depot, &farm.ponds, num_routes);
         let plan = |seed| {
             let options = Options { seed, max_iterations: Some(500), ..Options::default() };
             State::new(&network, &to_nodes(&solve(&problem, &options).routes))
@@ -123,10 +118,8 @@ mod tests {
         (network, states)
     }
 
-    fn assert_every_visit_once(network: &Network, state: &State) {
-        let mut visits: Vec<u32> = state.routes(network).concat();
-        visits.sort_unstable();
-        assert_eq!(visits, (0..network.num_visits as u32).collect::<Vec<_>>());
+    fn assert_is_sound(network: &Network, state: &State) {
+        testing::assert_every_visit_once(network, state);
         let costs = state.routes(network).iter().map(|route| network.route_cost(route)).sum::<f64>();
         assert!((costs - state.total).abs() < 1e-9 * costs);
     }
@@ -137,7 +130,7 @@ mod tests {
         for (num_ponds, num_routes) in [(30, 3), (120, 5), (40, 40)] {
             let (network, states) = plans(num_ponds, num_routes);
             for (keeper, giver) in states.iter().zip(&states[1..]) {
-                assert_every_visit_once(&network, &cross(&network, keeper, giver, &mut random));
+                assert_is_sound(&network, &cross(&network, keeper, giver, &mut random));
             }
         }
     }

@@ -366,6 +366,7 @@ mod tests {
     use crate::geometry::Point;
     use crate::problem::Problem;
     use crate::search::airspace::SharedAirspace;
+    use crate::search::testing::{research_network, routes_of};
     use proptest::prelude::*;
 
     /// A limit that may be used up must not be pulled down by the plans on the way.
@@ -402,12 +403,8 @@ mod tests {
             num_removed in 1_usize..12,
         ) {
             let farm = generate(num_ponds, Variant::Authors, seed).unwrap();
-            let mut network = Network::new(&Problem::research(farm.depot, &farm.ponds, num_routes).unwrap());
-            network.find_neighbours();
-            let mut routes = vec![Vec::new(); network.num_routes];
-            for (visit, home) in homes[..num_ponds].iter().enumerate() {
-                routes[home % network.num_routes].push(visit as u32);
-            }
+            let network = research_network(farm.depot, &farm.ponds, num_routes);
+            let routes = routes_of(&homes[..num_ponds], network.num_routes);
             let (mut state, mut touched) = (State::new(&network, &routes), Touched::default());
             let objective = Objective::longest_route(&network, &state);
             let removed: Vec<u32> = (0..num_removed.min(num_ponds) as u32).collect();
