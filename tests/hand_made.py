@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from pondhop import evaluate
-from pondhop.farm import Farm, Pond
+from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import Fleet
-from pondhop.planfile import FarmPlan, Solution
+from pondhop.solution import FarmPlan, Solution
 
 SHARED = Path(__file__).parents[1] / ".." / "shared"
 

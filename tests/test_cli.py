@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from pondhop import cli, cli_shared, instances, planners
+from pondhop import cli, instances, planners
+from pondhop.cli import shared
 
 ROOT = Path(__file__).resolve().parent.parent
 FARM = ROOT / "examples" / "delta_farm.geojson"
@@ -291,8 +292,8 @@ def test_a_bar_shows_up_on_a_terminal_when_something_takes_long(monkeypatch: pyt
     terminal = Terminal()
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", terminal)
-    monkeypatch.setattr(cli_shared, "SECONDS_BEFORE_PROGRESS", 0.0)
-    with cli_shared.progress("Planning", total=2) as advance:
+    monkeypatch.setattr(shared, "SECONDS_BEFORE_PROGRESS", 0.0)
+    with shared.progress("Planning", total=2) as advance:
         advance()
         while "Planning" not in terminal.getvalue():
             time.sleep(0.01)
@@ -302,7 +303,7 @@ def test_a_bar_shows_up_on_a_terminal_when_something_takes_long(monkeypatch: pyt
 def test_no_bar_shows_up_where_nothing_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    with cli_shared.progress("Planning", total=1) as advance:
+    with shared.progress("Planning", total=1) as advance:
         advance()
     assert terminal.getvalue() == ""
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pondhop import InvalidInput, LocalFrame
 from pondhop.farm import Farm, read_farm, write_farm
-from pondhop.farm_generator import generate_farm
+from pondhop.farm.made_up import generate_farm
 
 DELTA = (-90.6, 33.4)
 

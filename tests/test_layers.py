@@ -58,6 +58,8 @@ def test_imports_stay_light(module: str) -> None:
 
 
 def test_the_planning_command_loads_no_drawing() -> None:
-    code = "import json, sys, pondhop.cli, pondhop.planners, pondhop.tables; print(json.dumps(sorted(sys.modules)))"
+    modules = "pondhop.cli, pondhop.planners, pondhop.outputs, pondhop.cli.printed"
+    code = f"import json, sys, {modules}; print(json.dumps(sorted(sys.modules)))"
     loaded = json.loads(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
     assert not {"matplotlib", "pyogrio"} & set(loaded)
+    assert not [name for name in loaded if name.startswith(("pondhop.bench", "pondhop.report"))]

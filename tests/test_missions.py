@@ -14,7 +14,7 @@ import pytest
 from hand_made import DEPOT, make_farm, make_plan, square, two_drones
 from pondhop import InvalidInput
 from pondhop.errors import Fault
-from pondhop.farm import Farm, Pond
+from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import Fleet
 from pondhop.missions import write_missions
 from pondhop.missions.mavlink import MAX_NUM_ITEMS, MavlinkItem, from_mavlink, to_mavlink

@@ -15,10 +15,12 @@ from hypothesis import strategies as st
 from hand_made import make_farm, make_plan, square, two_drones
 from pondhop import InvalidInput
 from pondhop._core import separation
-from pondhop.farm import Farm, Pond
+from pondhop.documents.schemas import load_schema
+from pondhop.farm.model import Farm, Pond
+from pondhop.files.plan_geojson import write_plan_geojson
+from pondhop.files.plan_json import read_plan_json, write_plan_json
 from pondhop.fleet import Fleet
-from pondhop.planfile import FarmPlan, read_plan_json, write_plan_geojson, write_plan_json
-from pondhop.schemas import load_schema
+from pondhop.solution import FarmPlan
 
 
 def written(tmp_path: Path, farm_plan: FarmPlan) -> dict[str, Any]:

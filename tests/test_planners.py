@@ -7,7 +7,7 @@ import pytest
 
 import pondhop
 from pondhop import InvalidInput, Problem, _core
-from pondhop.planners import PLANNERS, Effort, Options
+from pondhop.planners import PLANNERS, OptionFields, Options
 
 
 @pytest.fixture
@@ -124,6 +124,6 @@ def test_search_does_not_pretend_to_keep_drones_apart(problem: Problem) -> None:
 
 
 def test_the_options_are_the_fields_of_effort() -> None:
-    assert get_type_hints(Options) == get_type_hints(Effort)
+    assert get_type_hints(OptionFields) == get_type_hints(Options)
     with pytest.raises(TypeError, match="speed"):
         pondhop.solve(Problem((0.0, 0.0), np.array([[0.0, 1.0]]), 1), speed=3)  # type: ignore[call-arg]

@@ -7,35 +7,37 @@ from pondhop._core import LocalFrame, Plan, Problem, Separation, __version__, ev
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:
-    from pondhop.farm import Farm, Pond, read_farm, write_farm
-    from pondhop.farm_generator import generate_farm
+    from pondhop import plot
+    from pondhop.farm import Farm, Pond, generate_farm, read_farm, write_farm
+    from pondhop.files.plan_geojson import write_plan_geojson
+    from pondhop.files.plan_json import read_plan_json, write_plan_json
     from pondhop.fleet import Fleet, read_fleet
     from pondhop.instances import ResearchFarm, generate, read_farms, write_farms
     from pondhop.missions import write_missions
-    from pondhop.planfile import FarmPlan, Solution, read_plan_json, write_plan_geojson, write_plan_json
     from pondhop.planners import PLANNERS, plan, solve
+    from pondhop.solution import FarmPlan, Solution
 
 _MODULE_OF = {
-    "FarmPlan": "planfile",
+    "FarmPlan": "solution",
     "Farm": "farm",
     "Fleet": "fleet",
     "PLANNERS": "planners",
     "Pond": "farm",
     "ResearchFarm": "instances",
-    "Solution": "planfile",
+    "Solution": "solution",
     "generate": "instances",
-    "generate_farm": "farm_generator",
+    "generate_farm": "farm",
     "plan": "planners",
     "read_farm": "farm",
     "read_farms": "instances",
     "read_fleet": "fleet",
-    "read_plan_json": "planfile",
+    "read_plan_json": "files.plan_json",
     "solve": "planners",
     "write_farm": "farm",
     "write_farms": "instances",
     "write_missions": "missions",
-    "write_plan_geojson": "planfile",
-    "write_plan_json": "planfile",
+    "write_plan_geojson": "files.plan_geojson",
+    "write_plan_json": "files.plan_json",
 }
 
 __all__ = [
@@ -58,6 +60,7 @@ __all__ = [
     "generate_farm",
     "lower_bound",
     "plan",
+    "plot",
     "read_farm",
     "read_farms",
     "read_fleet",
@@ -74,6 +77,8 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """Import the module of a public name when the name is first used, so that `import pondhop` stays light."""
+    if name == "plot":
+        return import_module("pondhop.plot")
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'pondhop' has no attribute {name!r}")
     value: object = getattr(import_module(f"pondhop.{_MODULE_OF[name]}"), name)

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
 from pondhop import _core
 from pondhop._core import Problem
 from pondhop.errors import Fault, InvalidInput
-from pondhop.planfile import FarmPlan, Solution
+from pondhop.solution import FarmPlan, Solution
 
 if TYPE_CHECKING:
-    from pondhop.farm import Farm
+    from pondhop.farm.model import Farm
     from pondhop.fleet import Fleet
 
 Routes = Sequence[Sequence[int]]
@@ -45,7 +45,7 @@ ProgressFunction = Callable[[float, int, float], object]
 
 
 @dataclass(frozen=True)
-class Effort:
+class Options:
     """How hard a planner tries, and for what. A planner ignores what it has no use for.
 
     Attributes
@@ -84,8 +84,8 @@ class Effort:
     decoding: Decoding = "greedy"
 
 
-class Options(TypedDict, total=False):
-    """Options of `solve` and `plan`: the fields of `Effort`, for type checkers and editors."""
+class PlainOptions(TypedDict, total=False):
+    """The fields of `Options` that can be said in words and numbers, for type checkers and editors."""
 
     seed: int
     time_limit_s: float | None
@@ -93,10 +93,15 @@ class Options(TypedDict, total=False):
     iterations: int | None
     slack_percent: float
     objective: Objective
-    start: Routes | None
-    progress: ProgressFunction | None
     has_separate_airspace: bool
     decoding: Decoding
+
+
+class OptionFields(PlainOptions, total=False):
+    """All fields of `Options`."""
+
+    start: Routes | None
+    progress: ProgressFunction | None
 
 
 @dataclass(frozen=True)
@@ -132,57 +137,57 @@ class Planner:
     description
         One line for help and tables.
     run
-        Plans a problem with an effort.
+        Plans a problem as wished.
     is_airspace_shared
         Whether drones cross each other's airspace, so that separate airspace cannot be asked for.
     """
 
     name: str
     description: str
-    run: Callable[[Problem, Effort], Planned]
+    run: Callable[[Problem, Options], Planned]
     is_airspace_shared: bool = False
 
 
-def _search_time_limit_s(problem: Problem, effort: Effort) -> float | None:
+def _search_time_limit_s(problem: Problem, options: Options) -> float | None:
     """Return how long to search: as asked, or by the size of the farm."""
-    if effort.time_limit_s is not None or effort.iterations is not None:
-        return effort.time_limit_s
+    if options.time_limit_s is not None or options.iterations is not None:
+        return options.time_limit_s
     least_s, most_s = SEARCH_SECONDS
     return min(max(least_s, SEARCH_SECONDS_PER_POND * problem.num_ponds), most_s)
 
 
-def _search(problem: Problem, effort: Effort) -> Planned:
+def _search(problem: Problem, options: Options) -> Planned:
     routes, elapsed_s, _, is_interrupted = _core.search(
         problem,
-        seed=effort.seed,
-        time_limit_s=_search_time_limit_s(problem, effort),
-        iterations=effort.iterations,
-        threads=effort.threads,
-        slack=effort.slack_percent / 100,
-        objective=effort.objective,
-        start=effort.start,
-        progress=effort.progress,
+        seed=options.seed,
+        time_limit_s=_search_time_limit_s(problem, options),
+        iterations=options.iterations,
+        threads=options.threads,
+        slack=options.slack_percent / 100,
+        objective=options.objective,
+        start=options.start,
+        progress=options.progress,
     )
     return Planned(routes, elapsed_s, is_interrupted)
 
 
-def _territory(problem: Problem, effort: Effort) -> Planned:
-    return Planned(*_core.territory(problem, seed=effort.seed, time_limit_s=effort.time_limit_s))
+def _territory(problem: Problem, options: Options) -> Planned:
+    return Planned(*_core.territory(problem, seed=options.seed, time_limit_s=options.time_limit_s))
 
 
-def _auto(problem: Problem, effort: Effort) -> Planned:
+def _auto(problem: Problem, options: Options) -> Planned:
     """Choose between `search` and `territory`, and how long to search."""
-    if effort.has_separate_airspace:
+    if options.has_separate_airspace:
         reason = "territory, because separate airspace is asked for"
-        return replace(_territory(problem, effort), reason=reason)
-    if effort.time_limit_s is not None:
-        how_long = f"{effort.time_limit_s:g} s, as asked"
-    elif effort.iterations is not None:
-        how_long = f"{effort.iterations} steps, as asked"
+        return replace(_territory(problem, options), reason=reason)
+    if options.time_limit_s is not None:
+        how_long = f"{options.time_limit_s:g} s, as asked"
+    elif options.iterations is not None:
+        how_long = f"{options.iterations} steps, as asked"
     else:
-        how_long = f"{_search_time_limit_s(problem, effort):g} s, which is enough for {problem.num_ponds} ponds"
+        how_long = f"{_search_time_limit_s(problem, options):g} s, which is enough for {problem.num_ponds} ponds"
     reason = f"search for {how_long}; it has the shortest routes where drones may share airspace"
-    return replace(_search(problem, effort), reason=reason)
+    return replace(_search(problem, options), reason=reason)
 
 
 @contextmanager
@@ -196,31 +201,31 @@ def _extra(extra: str) -> Iterator[None]:
         raise InvalidInput([Fault("planner", f"it needs {package}, which is not installed", action)]) from error
 
 
-def _ortools(problem: Problem, effort: Effort) -> Planned:
+def _ortools(problem: Problem, options: Options) -> Planned:
     with _extra("baselines"):
         from pondhop.baselines import ortools
-    return Planned(*ortools.solve_as_authors(problem, time_limit_s=effort.time_limit_s))
+    return Planned(*ortools.solve_as_authors(problem, time_limit_s=options.time_limit_s))
 
 
-def _ortools_gls(problem: Problem, effort: Effort) -> Planned:
+def _ortools_gls(problem: Problem, options: Options) -> Planned:
     with _extra("baselines"):
         from pondhop.baselines import ortools
-    found = ortools.solve_guided(problem, time_limit_s=effort.time_limit_s, max_solutions=effort.iterations)
+    found = ortools.solve_guided(problem, time_limit_s=options.time_limit_s, max_solutions=options.iterations)
     return Planned(*found)
 
 
-def _pyvrp(problem: Problem, effort: Effort) -> Planned:
+def _pyvrp(problem: Problem, options: Options) -> Planned:
     with _extra("baselines"):
         from pondhop.baselines import pyvrp
-    found = pyvrp.solve(problem, seed=effort.seed, time_limit_s=effort.time_limit_s, iterations=effort.iterations)
+    found = pyvrp.solve(problem, seed=options.seed, time_limit_s=options.time_limit_s, iterations=options.iterations)
     return Planned(*found)
 
 
-def _attention(name: Literal["am50", "am_minmax"], problem: Problem, effort: Effort) -> Planned:
+def _attention(name: Literal["am50", "am_minmax"], problem: Problem, options: Options) -> Planned:
     from pondhop.baselines import attention
 
     return Planned(
-        *attention.plan(problem, name, decoding=effort.decoding, num_samples=effort.iterations, seed=effort.seed)
+        *attention.plan(problem, name, decoding=options.decoding, num_samples=options.iterations, seed=options.seed)
     )
 
 
@@ -241,7 +246,7 @@ PLANNERS = {
         Planner(
             "hpp",
             "the paper's planner: k-means clusters, each flown back and forth; a territory for every drone",
-            lambda problem, effort: Planned(*_core.hpp(problem, seed=effort.seed)),
+            lambda problem, options: Planned(*_core.hpp(problem, seed=options.seed)),
         ),
         Planner(
             "territory",
@@ -287,7 +292,7 @@ def solve(
     problem: Problem,
     *,
     planner: str | PlannerFunction = "auto",
-    **options: Unpack[Options],
+    **options: Unpack[OptionFields],
 ) -> Solution:
     """Plan routes for a problem.
 
@@ -298,7 +303,7 @@ def solve(
     planner
         A name in `PLANNERS`, or a function of your own (see `PlannerFunction`).
     **options
-        Fields of `Effort`, as in ``seed=7, time_limit_s=0.1``.
+        Fields of `Options`, as in ``seed=7, time_limit_s=0.1``.
 
     Returns
     -------
@@ -310,22 +315,22 @@ def solve(
     InvalidInput
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
-    effort = Effort(**options)
-    faults = _faults(effort, problem)
+    wishes = Options(**options)
+    faults = _faults(wishes, problem)
     chosen = _chosen(planner, faults)
-    if effort.has_separate_airspace and chosen is not None and chosen.is_airspace_shared:
+    if wishes.has_separate_airspace and chosen is not None and chosen.is_airspace_shared:
         message = f"{chosen.name} lets drones share airspace"
         faults.append(Fault("has_separate_airspace", message, "use auto or territory"))
     if chosen is None or faults:
         raise InvalidInput(faults)
     cpu_start_s = time.process_time()
-    planned = chosen.run(problem, effort)
+    planned = chosen.run(problem, wishes)
     cpu_s = time.process_time() - cpu_start_s
     return Solution(
         problem=problem,
         plan=_core.evaluate(problem, planned.routes),
         planner=chosen.name,
-        seed=effort.seed,
+        seed=wishes.seed,
         elapsed_s=planned.elapsed_s,
         cpu_s=cpu_s,
         lower_bound=_core.lower_bound(problem),
@@ -339,7 +344,7 @@ def plan(
     fleet: Fleet,
     *,
     planner: str | PlannerFunction = "auto",
-    **options: Unpack[Options],
+    **options: Unpack[OptionFields],
 ) -> FarmPlan:
     """Plan a round over a farm for a fleet.
 
@@ -368,26 +373,26 @@ def plan(
     return FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
 
 
-def _faults(effort: Effort, problem: Problem) -> list[Fault]:
+def _faults(options: Options, problem: Problem) -> list[Fault]:
     faults = []
-    if not 0 <= effort.seed < 2**64:
-        faults.append(Fault("seed", f"{effort.seed} is not a whole number from 0 to 2^64 - 1", "choose another seed"))
-    if effort.time_limit_s is not None and not effort.time_limit_s > 0:
-        faults.append(Fault("time_limit_s", f"{effort.time_limit_s} is not above 0", "give seconds, or leave it out"))
-    if effort.threads < 1:
-        faults.append(Fault("threads", f"{effort.threads} is below 1", "give at least one thread"))
-    if effort.iterations is not None and effort.iterations < 1:
-        faults.append(Fault("iterations", f"{effort.iterations} is below 1", "give at least one, or leave it out"))
-    if not 0 <= effort.slack_percent < math.inf:
-        faults.append(Fault("slack_percent", f"{effort.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
+    if not 0 <= options.seed < 2**64:
+        faults.append(Fault("seed", f"{options.seed} is not a whole number from 0 to 2^64 - 1", "choose another seed"))
+    if options.time_limit_s is not None and not options.time_limit_s > 0:
+        faults.append(Fault("time_limit_s", f"{options.time_limit_s} is not above 0", "give seconds, or leave it out"))
+    if options.threads < 1:
+        faults.append(Fault("threads", f"{options.threads} is below 1", "give at least one thread"))
+    if options.iterations is not None and options.iterations < 1:
+        faults.append(Fault("iterations", f"{options.iterations} is below 1", "give at least one, or leave it out"))
+    if not 0 <= options.slack_percent < math.inf:
+        faults.append(Fault("slack_percent", f"{options.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
     for name, chosen, possible in (
-        ("objective", effort.objective, get_args(Objective)),
-        ("decoding", effort.decoding, get_args(Decoding)),
+        ("objective", options.objective, get_args(Objective)),
+        ("decoding", options.decoding, get_args(Decoding)),
     ):
         if chosen not in possible:
             faults.append(Fault(name, f"there is no {name} {chosen!r}", f"choose one of: {', '.join(possible)}"))
-    if effort.start is not None:
-        faults += _start_faults(problem, effort.start)
+    if options.start is not None:
+        faults += _start_faults(problem, options.start)
     return faults
 
 
@@ -421,9 +426,9 @@ def _chosen(planner: str | PlannerFunction, faults: list[Fault]) -> Planner | No
 def _timed(function: PlannerFunction) -> Planner:
     """Put a function of the user into the shape of our planners."""
 
-    def run(problem: Problem, effort: Effort) -> Planned:
+    def run(problem: Problem, options: Options) -> Planned:
         start = time.perf_counter()
-        found = function(problem, effort.seed, effort.time_limit_s)
+        found = function(problem, options.seed, options.time_limit_s)
         return Planned(found, time.perf_counter() - start)
 
     name = getattr(function, "__name__", type(function).__name__)

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from pondhop._core import LocalFrame, Plan, Problem, evaluate
 from pondhop.palette import ROUTE_COLOURS, route_colour
-from pondhop.planfile import FarmPlan
+from pondhop.solution import FarmPlan
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from pondhop.farm_geometry import Ring
+    from pondhop.places import Ring
 
 Theme = Literal["light", "dark"]
 Points = NDArray[np.float64]

@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from pondhop.atomic import write_all
+from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 
 

@@ -157,7 +157,7 @@ class Run:
 def parse_entrants(text: str) -> list[Entrant]:
     """Return the planners and options of ``name,name:option=value:option=value,module:function``.
 
-    Options are the fields of `pondhop.planners.Effort` that hold a number or a word; a short run on two ponds shows
+    Options are the fields of `pondhop.planners.Options` that hold a number or a word; a short run on two ponds shows
     whether the planner is there and takes their values. ``module:function`` is a planner of your own: see
     `pondhop.planners.PlannerFunction`.
 
@@ -185,7 +185,7 @@ def _parse_entrant(text: str, faults: list[Fault]) -> Entrant:
             return Entrant(text, name)
         planner = function
     options: dict[str, int | float | str] = {}
-    known = {option.name for option in dataclasses.fields(planners.Effort)} - {
+    known = {option.name for option in dataclasses.fields(planners.Options)} - {
         "seed",
         "time_limit_s",
         "start",

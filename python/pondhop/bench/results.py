@@ -15,8 +15,8 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from pondhop.atomic import write_all
 from pondhop.bench.measure import Run
+from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 
 RESULTS_NAME = "results.csv"

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from pondhop.bench.best_known import BestKnown, BestPlan
 from pondhop.bench.measure import Run
 from pondhop.errors import Fault, InvalidInput
-from pondhop.planfile import gap_percent
+from pondhop.solution import gap_percent
 
 SAME_LENGTH = 1e-6
 """Lengths that differ by a smaller share are the same: best-known files round."""

@@ -7,13 +7,13 @@ import re
 from collections.abc import Callable, Container, Iterator
 from pathlib import Path
 
-from pondhop.atomic import write_all
+from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 from pondhop.missions.mavlink import MAX_NUM_ITEMS
 from pondhop.missions.mission import Mission, build_mission, check_mission
 from pondhop.missions.qgroundcontrol import parse_qgroundcontrol_plan, qgroundcontrol_plan
 from pondhop.missions.waypoints import parse_waypoints, waypoints
-from pondhop.planfile import FarmPlan
+from pondhop.solution import FarmPlan
 
 __all__ = ["write_missions"]
 

@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from pondhop.errors import Fault
-from pondhop.farm import Farm, Pond
-from pondhop.farm_features import LonLat
-from pondhop.farm_geometry import Ring
+from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import MAX_HEIGHT_M, Fleet
+from pondhop.places import LonLat, Ring
 
 MAX_HOLD_S = 65_535
 """ArduPilot keeps the hold of a waypoint as whole seconds in 16 bits."""

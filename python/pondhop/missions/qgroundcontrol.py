@@ -8,11 +8,11 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from pondhop.documents.schemas import parse_json
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm_geometry import Ring
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Mission, MissionItem
-from pondhop.schemas import parse_json
+from pondhop.places import Ring
 
 _ARDUPILOT, _QUADCOPTER, _RELATIVE_TO_HOME = 3, 2, 1
 _UNKNOWN_AMSL_M = 0.0

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm_features import LonLat
 from pondhop.missions.mavlink import (
     FRAME_GLOBAL,
     NAV_WAYPOINT,
@@ -20,6 +19,7 @@ from pondhop.missions.mavlink import (
     zeros_for_unset,
 )
 from pondhop.missions.mission import Mission
+from pondhop.places import LonLat
 
 _HEADER = "QGC WPL 110"
 _NUM_COLUMNS = 12

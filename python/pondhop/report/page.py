@@ -14,7 +14,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
-from pondhop.atomic import write_all
+from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 from pondhop.plot import LOOKS, Theme, save_figure
 from pondhop.report import charts, maps

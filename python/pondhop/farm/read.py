@@ -1,24 +1,20 @@
-"""A farm: its ponds, depot, stations and areas, in WGS84 longitude and latitude; and farm files."""
+"""Farm files of any format made into a `Farm`, or all that is wrong with them."""
 
 from __future__ import annotations
 
 import difflib
 import gc
-import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
-from pondhop import farm_geometry
-from pondhop._core import LocalFrame, Problem
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm_features import Feature, Geometry, LonLat, Source, normal_name, number_of, text_of
-from pondhop.farm_formats import read_source
-from pondhop.farm_geometry import Area
-from pondhop.fleet import Fleet
+from pondhop.farm import checks
+from pondhop.farm.features import Feature, Geometry, Source, normal_name, number_of, text_of
+from pondhop.farm.formats import read_source
+from pondhop.farm.model import Farm, Pond
+from pondhop.places import Area, LonLat, distance_m
 
 ROLES = ("pond", "depot", "station", "no_fly", "fence")
 """What a feature can be, in the property ``role``; the first is the default."""
@@ -28,85 +24,6 @@ MAX_SAMPLING_OFFSET_M = 1_000.0
 
 MAX_FAULTS = 200
 """Faults that are listed one by one; more are counted."""
-
-DECIMALS = 7
-"""Decimals of degrees in written files: about a centimetre."""
-
-
-@dataclass(frozen=True)
-class Pond:
-    """A pond.
-
-    Attributes
-    ----------
-    id
-        Unique on its farm.
-    sampling_point
-        Where a drone samples: longitude, latitude in degrees.
-    outline
-        Rings of the polygon, the outer one first, each closed; empty for a pond given as a point.
-    service_s
-        Time on station if it differs from that of the fleet.
-    """
-
-    id: str
-    sampling_point: LonLat
-    outline: Area = ()
-    service_s: float | None = None
-
-
-@dataclass(frozen=True)
-class Farm:
-    """A farm as read from a file; see `pondhop.read_farm`.
-
-    Attributes
-    ----------
-    name
-        For tables and titles.
-    ponds
-        In the order of the file; a pond's index here is its index in a plan's routes.
-    depot
-        Longitude and latitude in degrees.
-    stations, no_fly, fences
-        Other features of the file.
-    notes
-        What the reader assumed or changed, a sentence each.
-    """
-
-    name: str
-    ponds: tuple[Pond, ...]
-    depot: LonLat
-    stations: tuple[LonLat, ...] = ()
-    no_fly: tuple[Area, ...] = ()
-    fences: tuple[Area, ...] = ()
-    notes: tuple[str, ...] = ()
-
-    def to_problem(self, fleet: Fleet) -> Problem:
-        """The planning task in metres, in the local frame whose origin is the depot.
-
-        Parameters
-        ----------
-        fleet
-            The drones; its time on station applies to every pond without its own.
-
-        Returns
-        -------
-        Problem
-            Pond i is ``ponds[i]``.
-        """
-        sampling_points = np.array([pond.sampling_point for pond in self.ponds], dtype=np.float64)
-        return Problem(
-            (0.0, 0.0),
-            LocalFrame(*self.depot).to_local(sampling_points),
-            fleet.num_drones,
-            service_durations_s=np.array(
-                [fleet.service_s if pond.service_s is None else pond.service_s for pond in self.ponds]
-            ),
-            speed_m_s=fleet.speed_m_s,
-            leg_stop_s=fleet.leg_stop_s,
-            max_length_m=np.inf if fleet.max_route_length_m is None else fleet.max_route_length_m,
-            max_duration_s=np.inf if fleet.max_route_duration_s is None else fleet.max_route_duration_s,
-        )
 
 
 def read_farm(path: str | Path, *, depot: LonLat | None = None) -> Farm:
@@ -166,51 +83,6 @@ def _collection_paused() -> Iterator[None]:
             gc.enable()
 
 
-def write_farm(path: str | Path, farm: Farm) -> None:
-    """Write a farm as GeoJSON, one feature a line, with 7 decimals (a centimetre); `read_farm` reads it back.
-
-    Notes are not written: they tell of the reading, not of the farm.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
-    features = [
-        _feature_json({"id": pond.id}, pond)
-        if pond.service_s is None
-        else _feature_json({"id": pond.id, "service_s": pond.service_s}, pond)
-        for pond in farm.ponds
-    ]
-    features.append(_point_json({"role": "depot"}, farm.depot))
-    features.extend(_point_json({"role": "station"}, station) for station in farm.stations)
-    features.extend(_polygon_json({"role": "no_fly"}, area) for area in farm.no_fly)
-    features.extend(_polygon_json({"role": "fence"}, area) for area in farm.fences)
-    lines = ",\n".join(json.dumps(feature, separators=(",", ":"), allow_nan=False) for feature in features)
-    head = f'{{"type":"FeatureCollection","name":{json.dumps(farm.name)},"features":[\n'
-    Path(path).write_text(f"{head}{lines}\n]}}\n", encoding="utf-8")
-
-
-def _feature_json(properties: dict[str, object], pond: Pond) -> dict[str, object]:
-    if not pond.outline:
-        return _point_json(properties, pond.sampling_point)
-    return _polygon_json({**properties, "sampling_point": _rounded(pond.sampling_point)}, pond.outline)
-
-
-def _point_json(properties: dict[str, object], point: LonLat) -> dict[str, object]:
-    geometry = {"type": "Point", "coordinates": _rounded(point)}
-    return {"type": "Feature", "properties": properties, "geometry": geometry}
-
-
-def _polygon_json(properties: dict[str, object], area: Area) -> dict[str, object]:
-    geometry = {"type": "Polygon", "coordinates": [[_rounded(position) for position in ring] for ring in area]}
-    return {"type": "Feature", "properties": properties, "geometry": geometry}
-
-
-def _rounded(position: LonLat) -> list[float]:
-    return [round(position[0], DECIMALS), round(position[1], DECIMALS)]
-
-
 def _limited(faults: Sequence[Fault]) -> list[Fault]:
     if len(faults) <= MAX_FAULTS:
         return list(faults)
@@ -242,7 +114,7 @@ class _FarmReader:
         if not features and not self.faults:
             action = "export the layer that holds the ponds"
             self.faults.append(Fault("file", "there is no feature in this file", action))
-        misplaced = farm_geometry.check_coordinates(features)
+        misplaced = checks.check_coordinates(features)
         self.faults.extend(misplaced)
         misplaced_places = {fault.path for fault in misplaced}
         all_misplaced = len(misplaced) == 1 and misplaced[0].path.startswith("all ")
@@ -302,9 +174,9 @@ class _FarmReader:
         if geometry.polygons or geometry.lines:
             areas = self._areas(feature, "a pond")
             if areas:
-                outline = max(areas, key=farm_geometry.area_deg2) if len(areas) > 1 else areas[0]
-                extent_m = farm_geometry.extent_m(outline)
-                if extent_m > farm_geometry.MAX_GAP_M:
+                outline = max(areas, key=checks.area_deg2) if len(areas) > 1 else areas[0]
+                extent_m = checks.extent_m(outline)
+                if extent_m > checks.MAX_GAP_M:
                     message = f"the pond is {extent_m / 1000:.0f} km across"
                     self.faults.append(Fault(feature.place, message, "look for a mistyped corner"))
             if len(areas) > 1:
@@ -319,7 +191,7 @@ class _FarmReader:
         if len(self.faults) > num_faults:
             return
         if outline and sampling_point is not None:
-            offset_m = farm_geometry.distance_to_outline_m(sampling_point, outline)
+            offset_m = checks.distance_to_outline_m(sampling_point, outline)
             if offset_m > MAX_SAMPLING_OFFSET_M:
                 place = feature.property_place.format("sampling_point")
                 message = f"the sampling point lies {offset_m / 1000:.1f} km outside the pond"
@@ -328,7 +200,7 @@ class _FarmReader:
             if offset_m > 0.0:
                 self.offsets_m[feature.place] = offset_m
         pond_id = self._id(feature)
-        self.ponds.append(Pond(pond_id, sampling_point or farm_geometry.point_inside(outline), outline, service_s))
+        self.ponds.append(Pond(pond_id, sampling_point or checks.point_inside(outline), outline, service_s))
         self.pond_features.append(feature)
 
     def _id(self, feature: Feature) -> str:
@@ -359,9 +231,9 @@ class _FarmReader:
         place = feature.property_place.format(key)
         if len(numbers) == 2 and numbers[0] is not None and numbers[1] is not None:
             lonlat = (numbers[0], numbers[1])
-            if abs(lonlat[0]) <= 180.0 and abs(lonlat[1]) <= farm_geometry.MAX_LATITUDE_DEG:
+            if abs(lonlat[0]) <= 180.0 and abs(lonlat[1]) <= checks.MAX_LATITUDE_DEG:
                 return lonlat
-            exchanged = farm_geometry.exchanged(lonlat)
+            exchanged = checks.exchanged(lonlat)
             action = "exchange longitude and latitude" if exchanged else "correct longitude and latitude"
             self.faults.append(Fault(place, f"{lonlat[0]:g}, {lonlat[1]:g} is no place of a pond", action))
         else:
@@ -375,7 +247,7 @@ class _FarmReader:
             return geometry.points[0]
         if geometry.polygons or geometry.lines:
             areas = self._areas(feature, f"a {role}")
-            return farm_geometry.point_inside(areas[0]) if areas else None
+            return checks.point_inside(areas[0]) if areas else None
         self.faults.append(Fault(feature.place, f"the {role} has no position", "draw it as a point"))
         return None
 
@@ -388,12 +260,12 @@ class _FarmReader:
             else:
                 action = "draw it as a polygon, or close the line"
                 self.faults.append(Fault(feature.place, f"an open line is not {what}", action))
-        areas = [tuple(map(farm_geometry.close_ring, polygon)) for polygon in polygons]
+        areas = [tuple(map(checks.close_ring, polygon)) for polygon in polygons]
         if not areas and not feature.geometry.lines:
             self.faults.append(Fault(feature.place, f"without an outline this is not {what}", "draw it as a polygon"))
         valid = []
         for area in areas:
-            faults = farm_geometry.check_polygon(feature.place, area)
+            faults = checks.check_polygon(feature.place, area)
             self.faults.extend(faults)
             if not faults:
                 valid.append(area)
@@ -428,7 +300,7 @@ class _FarmReader:
         if any(pond.outline for pond in self.ponds):
             points = [pond.sampling_point for pond in self.ponds]
             outlines = [pond.outline for pond in self.ponds]
-            for inner, outer in farm_geometry.ponds_within_ponds(points, outlines):
+            for inner, outer in checks.ponds_within_ponds(points, outlines):
                 place, other = self.pond_features[inner].place, self.pond_features[outer].place
                 self.source.notes.append(
                     f"{place}: the sampling point of pond {self.ponds[inner].id} lies in pond {self.ponds[outer].id} "
@@ -443,7 +315,7 @@ class _FarmReader:
             self.faults.append(Fault("depot", f"{depot!r} is no position", action))
             return
         given = Feature("depot", "depot", {}, Geometry(points=[(lonlat[0], lonlat[1])]))
-        faults = farm_geometry.check_coordinates([given])
+        faults = checks.check_coordinates([given])
         self.faults.extend(faults)
         if faults:
             return
@@ -458,7 +330,7 @@ class _FarmReader:
         user, who thereby says which farm is meant, they are left out with a note; else they are faults.
         """
         points = [pond.sampling_point for pond in self.ponds]
-        groups = farm_geometry.neighbourhoods(points if self.depot is None else [*points, self.depot])
+        groups = checks.neighbourhoods(points if self.depot is None else [*points, self.depot])
         main = groups[0] if groups else []
         if self.depot is not None:
             main = next(group for group in groups if len(points) in group)
@@ -472,13 +344,13 @@ class _FarmReader:
             if points:
                 self._report_far_depot(others)
             return
-        centre = self.depot or farm_geometry.middle([points[index] for index in main])
+        centre = self.depot or checks.middle([points[index] for index in main])
         left_out: set[int] = set()
         for group in others:
             if len(group) > 1 and is_depot_given:
                 left_out.update(group)
                 ids = ", ".join(self.ponds[index].id for index in group[:5]) + (", ..." if len(group) > 5 else "")
-                away_km = farm_geometry.distance_m(centre, points[group[0]]) / 1000.0
+                away_km = distance_m(centre, points[group[0]]) / 1000.0
                 self.source.notes.append(
                     f"{len(group)} ponds ({ids}) lie {away_km:.0f} km from the depot: another farm, left out."
                 )
@@ -487,16 +359,16 @@ class _FarmReader:
         self.ponds = [pond for index, pond in enumerate(self.ponds) if index not in left_out]
 
     def _described(self, group: Sequence[int]) -> str:
-        lon, lat = farm_geometry.middle([self.ponds[index].sampling_point for index in group])
+        lon, lat = checks.middle([self.ponds[index].sampling_point for index in group])
         ponds = "1 pond lies" if len(group) == 1 else f"{len(group)} ponds lie"
         return f"{ponds} around {lon:.6f},{lat:.6f}"
 
     def _report_far_depot(self, groups: Sequence[list[int]]) -> None:
         depot = self.depot or (0.0, 0.0)
         points = [pond.sampling_point for pond in self.ponds]
-        away_km = min(farm_geometry.distance_m(depot, point) for point in points) / 1000.0
-        swapped_km = min(farm_geometry.distance_m((depot[1], depot[0]), point) for point in points) / 1000.0
-        if swapped_km * 1000.0 <= farm_geometry.MAX_GAP_M:
+        away_km = min(distance_m(depot, point) for point in points) / 1000.0
+        swapped_km = min(distance_m((depot[1], depot[0]), point) for point in points) / 1000.0
+        if swapped_km * 1000.0 <= checks.MAX_GAP_M:
             action = "longitude and latitude of the depot, or of all ponds, look exchanged; longitude comes first"
         else:
             action = f"correct it: {'; '.join(map(self._described, groups[:5]))}"
@@ -505,7 +377,7 @@ class _FarmReader:
     def _report_far_ponds(self, group: Sequence[int], centre: LonLat) -> None:
         for index in group:
             pond = self.ponds[index]
-            away_km = farm_geometry.distance_m(centre, pond.sampling_point) / 1000.0
+            away_km = distance_m(centre, pond.sampling_point) / 1000.0
             message = f"pond {pond.id!r} lies {away_km:.0f} km from the rest of the farm"
             action = "correct its coordinates, or remove it"
             if len(group) > 1:

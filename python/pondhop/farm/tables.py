@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from pondhop.errors import Fault
-from pondhop.farm_features import Feature, Geometry, LonLat, Source, is_blank, normal_name, number_of
+from pondhop.farm.features import Feature, Geometry, Source, is_blank, normal_name, number_of
+from pondhop.places import LonLat
 
 Axis = Literal["lon", "lat"]
 _AXES: tuple[Axis, Axis] = ("lon", "lat")

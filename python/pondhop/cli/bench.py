@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 import typer
 
-from pondhop.cli_shared import Json, progress
+from pondhop.cli.shared import Json, progress
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:
@@ -88,13 +88,12 @@ def run(
     Every farm is planned with every number of routes, planner, time limit and seed. What is in results.csv already is
     not run again, as long as the code that plans is the same: the same command goes on where it was stopped.
     """
-    from pondhop import tables
-    from pondhop.atomic import write_all
     from pondhop.bench import execute, farm_sets
     from pondhop.bench.best_known import write_best_known
     from pondhop.bench.measure import parse_entrants
     from pondhop.bench.results import Results, read_results
     from pondhop.bench.summary import Comparison, markdown
+    from pondhop.documents.atomic import write_all
 
     faults: list[Fault] = []
     bench_farms: list[BenchFarm] = []
@@ -138,7 +137,7 @@ def run(
         numbers = {"num_new_runs": len(missing), "num_runs": len(comparison.runs)}
         typer.echo(json.dumps(files_written | numbers | _rows(comparison), indent=1))
     else:
-        tables.print_bench(comparison)
+        _print_comparison(comparison)
         skipped = f", {len(requested) - len(missing)} were there already" if len(requested) > len(missing) else ""
         typer.echo(f"Written to {output}: {results.path.name}, {TABLE_NAME}; {len(missing)} runs{skipped}")
 
@@ -155,9 +154,9 @@ def table(
     - `pondhop bench table bench/results.csv`
     - `pondhop bench table bench/results.csv --best-known best_known.json -o bench/results.md`
     """
-    from pondhop.atomic import write_all
     from pondhop.bench.results import read_results
     from pondhop.bench.summary import Comparison, markdown
+    from pondhop.documents.atomic import write_all
 
     faults: list[Fault] = []
     best_known_files = [best_known] if best_known is not None else []
@@ -326,3 +325,28 @@ def _collecting(faults: list[Fault]) -> Iterator[None]:
         yield
     except InvalidInput as error:
         faults += error.faults
+
+
+def _print_comparison(comparison: Comparison) -> None:
+    """Print the averages of a benchmark, a row a set and planner."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=None, header_style="bold")
+    for heading in ("Set", "Routes", "Planner", "Limit"):
+        table.add_column(heading)
+    for heading in ("Longest", "Gap", "Worst", "Seconds"):
+        table.add_column(heading, justify="right")
+    for row in comparison.sets():
+        name = (row.set_name, str(row.num_routes), row.planner, row.time_limit)
+        gaps = map(_percent, (row.gap_percent, row.worst_gap_percent))
+        table.add_row(*name, f"{row.max_route_length:.6g}", *gaps, f"{row.elapsed_s:.3g}")
+    console = Console(highlight=False)
+    console.print(table)
+    num_broken = sum(run.num_violations > 0 for run in comparison.runs)
+    if num_broken:
+        console.print(f"{num_broken} of {len(comparison.runs)} plans break a rule", style="bold red")
+
+
+def _percent(value: float | None) -> str:
+    return "unknown" if value is None else f"{value:.2f} %"

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 from pondhop.errors import Fault
+from pondhop.places import LonLat
 
-LonLat = tuple[float, float]
 Positions = list[LonLat]
 
 

@@ -8,9 +8,8 @@ from statistics import fmean
 from rich.console import Console
 from rich.table import Table
 
-from pondhop.bench.summary import Comparison
-from pondhop.planfile import FarmPlan, Solution
-from pondhop.solutionfile import Judgement
+from pondhop.files.routes_json import Judgement
+from pondhop.solution import FarmPlan, Solution
 
 MAX_ROWS = 20
 """Of a table with a row a farm; beyond it only the averages are printed."""
@@ -93,24 +92,6 @@ def print_judgements(judgements: Sequence[Judgement]) -> None:
             console.print(f"Violation in farm {farm.index}: {violation}", style="bold red")
 
 
-def print_bench(comparison: Comparison) -> None:
-    """Print the averages of a benchmark, a row a set and planner."""
-    table = Table(box=None, header_style="bold")
-    for heading in ("Set", "Routes", "Planner", "Limit"):
-        table.add_column(heading)
-    for heading in ("Longest", "Gap", "Worst", "Seconds"):
-        table.add_column(heading, justify="right")
-    for row in comparison.sets():
-        name = (row.set_name, str(row.num_routes), row.planner, row.time_limit)
-        gaps = map(_percent, (row.gap_percent, row.worst_gap_percent))
-        table.add_row(*name, f"{row.max_route_length:.6g}", *gaps, f"{row.elapsed_s:.3g}")
-    console = Console(highlight=False)
-    console.print(table)
-    num_broken = sum(run.num_violations > 0 for run in comparison.runs)
-    if num_broken:
-        console.print(f"{num_broken} of {len(comparison.runs)} plans break a rule", style="bold red")
-
-
 def _averages_table(
     title: str, longest: Sequence[float], totals: Sequence[float], gaps_percent: Sequence[float | None]
 ) -> Table:
@@ -135,10 +116,6 @@ def _print_assumptions(console: Console, farm_plan: FarmPlan) -> None:
         console.print(f"Assumed, not measured: {names}. Say what is true of your drones in a --fleet file.")
     for note in farm_plan.notes:
         console.print(f"Note: {note}")
-
-
-def _percent(value: float | None) -> str:
-    return "unknown" if value is None else f"{value:.2f} %"
 
 
 def _km(length_m: float) -> str:

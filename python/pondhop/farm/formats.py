@@ -1,4 +1,4 @@
-"""Farm files of every format as features: GeoJSON by hand, tables in `farm_tables`, all others through GDAL.
+"""Farm files of every format as features: GeoJSON by hand, tables in `tables`, all others through GDAL.
 
 GeoJSON is parsed here, so that faults name their place in the file and the heavy packages stay unloaded. Anything else
 that GDAL reads (KML, KMZ, Shapefile, GeoPackage, FlatGeobuf, ...) comes through pyogrio, imported only then.
@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pondhop.errors import Fault
-from pondhop.farm_features import Feature, Geometry, LonLat, Positions, Source, number_of, text_of
-from pondhop.farm_tables import read_table
+from pondhop.farm.features import Feature, Geometry, Positions, Source, number_of, text_of
+from pondhop.farm.tables import read_table
+from pondhop.places import LonLat
 
 if TYPE_CHECKING:
     import pyproj

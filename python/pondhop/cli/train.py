@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from pondhop.cli_shared import Json
+from pondhop.cli.shared import Json
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from pondhop._core import LocalFrame
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm import Farm, Pond
-from pondhop.farm_features import LonLat
-from pondhop.farm_geometry import MAX_LATITUDE_DEG, point_inside
+from pondhop.farm.checks import MAX_LATITUDE_DEG, point_inside
+from pondhop.farm.model import Farm, Pond
+from pondhop.places import LonLat
 
 MAX_PONDS = 5_000
 """Such a farm is 18 km wide; nobody has one."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from pondhop import _core
 from pondhop._core import Problem
 from pondhop.errors import Fault, InvalidInput
-from pondhop.planfile import Solution, gap_percent
+from pondhop.solution import Solution, gap_percent
 
 
 @dataclass(frozen=True)

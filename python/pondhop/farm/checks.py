@@ -15,22 +15,17 @@ import numpy as np
 
 from pondhop._core import LocalFrame
 from pondhop.errors import Fault
-from pondhop.farm_features import Feature, LonLat, Positions
+from pondhop.farm.features import Feature, Positions
+from pondhop.places import EARTH_RADIUS_M, Area, LonLat, Ring, distance_m
 
 if TYPE_CHECKING:
     import shapely
-
-Ring = tuple[LonLat, ...]
-Area = tuple[Ring, ...]
 
 MAX_LATITUDE_DEG = 75.0
 """No pond is farmed nearer to a pole; a latitude beyond it is a longitude."""
 
 MAX_GAP_M = 20_000.0
 """Ponds and depot of one farm are linked by gaps below this; no sampling drone flies further and returns."""
-
-EARTH_RADIUS_M = 6_371_008.8
-"""Mean radius of the Earth, for distances that need not be exact."""
 
 METRES_PER_DEGREE = math.radians(EARTH_RADIUS_M)
 """Length of a degree of latitude."""
@@ -179,15 +174,6 @@ def ponds_within_ponds(points: Sequence[LonLat], outlines: Sequence[Area]) -> li
     inside, container = tree.query(shapely.points(np.array(points)), predicate="within")
     pairs = ((int(i), has_outline[int(j)]) for i, j in zip(inside, container, strict=True))
     return sorted((i, j) for i, j in pairs if i != j)
-
-
-def distance_m(a: LonLat, b: LonLat) -> float:
-    """Great-circle distance of two places in metres (haversine formula)."""
-    (a_lon, a_lat), (b_lon, b_lat) = ((math.radians(lon), math.radians(lat)) for lon, lat in (a, b))
-    half_chord2 = (
-        math.sin((b_lat - a_lat) / 2) ** 2 + math.cos(a_lat) * math.cos(b_lat) * math.sin((b_lon - a_lon) / 2) ** 2
-    )
-    return 2.0 * EARTH_RADIUS_M * math.asin(math.sqrt(min(1.0, half_chord2)))
 
 
 def middle(points: Sequence[LonLat]) -> LonLat:

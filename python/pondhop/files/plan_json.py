@@ -1,7 +1,6 @@
-"""A plan with what it was made for: results as values, and as JSON and GeoJSON.
+"""``plan.json``: a plan with its schedule and what it was made for, the contract for other programs.
 
-``plan.json`` is the contract for other programs (docs/reference/json.md, ``schemas/plan-1.json``); ``plan.geojson`` is
-for maps.
+docs/reference/json.md describes it, ``documents/schemas/plan-1.json`` is its schema.
 """
 
 from __future__ import annotations
@@ -10,21 +9,20 @@ import json
 import math
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pondhop._core import Plan, Problem, Separation, __version__, evaluate, separation
-from pondhop.atomic import write_all
+from pondhop._core import Problem, Separation, __version__, evaluate, separation
+from pondhop.documents.atomic import write_all
+from pondhop.documents.schemas import read_json
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm import Farm, Pond
-from pondhop.farm_features import LonLat
-from pondhop.farm_geometry import Ring
+from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import Fleet
-from pondhop.palette import route_colour
-from pondhop.schemas import read_json
+from pondhop.places import LonLat, Ring
+from pondhop.solution import FarmPlan, Solution
 
 SCHEMA = "pondhop-plan/1"
 
@@ -33,74 +31,6 @@ _ABSOLUTE_TOLERANCE = 1e-3
 """How far the numbers of a file may be from what the evaluator finds: a millimetre, a millisecond, or rounding."""
 
 _REMEDY = "change the routes only by planning again: all numbers of a plan follow from them"
-
-
-@dataclass(frozen=True)
-class Solution:
-    """What a planner made of a problem.
-
-    Attributes
-    ----------
-    problem, plan
-        The task and the evaluated routes.
-    planner, seed
-        How it was made.
-    elapsed_s
-        Wall time of planning, from coordinates to finished routes.
-    lower_bound
-        No plan has a shorter longest route, in length units.
-    separation
-        `None` where nobody measured it.
-    cpu_s
-        Processor time of all threads of this process while it planned; 0 for a plan that was read.
-    is_interrupted
-        Whether Ctrl-C ended the planning; the plan is the best so far.
-    reason
-        What `auto` chose and why; empty for other planners.
-    """
-
-    problem: Problem
-    plan: Plan
-    planner: str
-    seed: int
-    elapsed_s: float
-    lower_bound: float
-    separation: Separation | None = None
-    cpu_s: float = 0.0
-    is_interrupted: bool = False
-    reason: str = ""
-
-    @property
-    def gap_percent(self) -> float | None:
-        """How far the longest route is above the lower bound; `None` if the bound is 0."""
-        return gap_percent(self.plan.max_route_length, self.lower_bound)
-
-
-def gap_percent(max_route_length: float, lower_bound: float) -> float | None:
-    """Return how far a longest route is above the lower bound; `None` if the bound is 0."""
-    return 100 * (max_route_length - lower_bound) / lower_bound if lower_bound > 0 else None
-
-
-@dataclass(frozen=True)
-class FarmPlan:
-    """A solution for a real farm and fleet; pond indices of the routes are those of ``farm.ponds``."""
-
-    farm: Farm
-    fleet: Fleet
-    solution: Solution
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What the user should know before flying, a sentence each."""
-        notes = list(self.farm.notes)
-        if self.solution.reason:
-            notes.append(f"Planner {self.solution.planner} chose {self.solution.reason}.")
-        if self.fleet.sampling == "splashdown":
-            notes.append(
-                "Splashdown: set bit 2 of the ArduPilot parameter MIS_OPTIONS (add 4) on every drone, or it disarms on "
-                "the first pond and stays there."
-            )
-        return tuple(notes)
 
 
 def write_plan_json(path: str | os.PathLike[str], farm_plan: FarmPlan) -> None:
@@ -120,25 +50,6 @@ def write_plan_json(path: str | os.PathLike[str], farm_plan: FarmPlan) -> None:
     """
     text = json.dumps(_plan_object(farm_plan), indent=1, ensure_ascii=False, allow_nan=False)
     write_all({Path(path): text + "\n"})
-
-
-def write_plan_geojson(path: str | os.PathLike[str], farm_plan: FarmPlan) -> None:
-    """Write ``plan.geojson``: a LineString per route, a Point per stop, the depot; styled for maps (simplestyle 1.1).
-
-    Parameters
-    ----------
-    path
-        The file; written whole or not at all.
-    farm_plan
-        What to write.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
-    collection = {"type": "FeatureCollection", "features": list(_features(farm_plan))}
-    write_all({Path(path): json.dumps(collection, ensure_ascii=False, allow_nan=False) + "\n"})
 
 
 def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
@@ -251,45 +162,6 @@ def _leg_lengths_m(problem: Problem, route: list[int]) -> list[float]:
     """Lengths of the legs from depot to depot, one more than there are stops."""
     path = np.vstack([problem.depot, problem.ponds[route], problem.depot])
     return [float(length) for length in np.hypot(*np.diff(path, axis=0).T)]
-
-
-def _features(farm_plan: FarmPlan) -> Iterator[dict[str, Any]]:
-    farm, plan = farm_plan.farm, farm_plan.solution.plan
-    yield _feature("Point", farm.depot, {"role": "depot", "title": "Depot", "marker-symbol": "airfield"})
-    for index, route in enumerate(plan.routes):
-        colour = route_colour(index)
-        positions = [farm.depot, *(farm.ponds[pond].sampling_point for pond in route), farm.depot]
-        properties = {
-            "role": "route",
-            "title": f"Drone {index + 1}",
-            "drone": index + 1,
-            "num_ponds": len(route),
-            "length_m": round(float(plan.route_lengths[index]), 1),
-            "duration_s": round(float(plan.route_durations_s[index]), 1),
-            "stroke": colour,
-            "stroke-width": 3,
-            "stroke-opacity": 0.9,
-        }
-        yield _feature("LineString", positions, properties)
-    for index, route in enumerate(plan.routes):
-        for order, pond in enumerate(route):
-            properties = {
-                "role": "stop",
-                "title": f"Drone {index + 1}, stop {order + 1}: pond {farm.ponds[pond].id}",
-                "drone": index + 1,
-                "order": order + 1,
-                "pond": pond,
-                "id": farm.ponds[pond].id,
-                "arrival_s": round(float(plan.arrivals_s[index][order]), 1),
-                "departure_s": round(float(plan.departures_s[index][order]), 1),
-                "marker-color": route_colour(index),
-                "marker-size": "small",
-            }
-            yield _feature("Point", farm.ponds[pond].sampling_point, properties)
-
-
-def _feature(kind: str, coordinates: Any, properties: Mapping[str, Any]) -> dict[str, Any]:
-    return {"type": "Feature", "geometry": {"type": kind, "coordinates": coordinates}, "properties": dict(properties)}
 
 
 def _farm(content: Mapping[str, Any]) -> Farm:

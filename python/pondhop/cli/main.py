@@ -1,0 +1,93 @@
+"""The command line: ``pondhop COMMAND --help`` teaches each command.
+
+Exit codes: 0 done, 2 invalid input, 3 infeasible with ``--require-feasible``, 1 a bug, 130 stopped with Ctrl-C.
+Results go to stdout, everything else to stderr. Heavy packages are imported where they are used, because
+``pondhop plan`` should take no longer than planning does.
+"""
+
+from __future__ import annotations
+
+import shlex
+import signal
+import sys
+from typing import Annotated, NoReturn
+
+import typer
+
+from pondhop.cli.bench import bench
+from pondhop.cli.plan import generate_farm, plan
+from pondhop.cli.research import evaluate, generate, plot, solve
+from pondhop.cli.shared import EXIT_BUG, EXIT_INVALID_INPUT, print_faults
+from pondhop.cli.train import train_am
+from pondhop.errors import Fault, InvalidInput
+
+app = typer.Typer(
+    name="pondhop",
+    rich_markup_mode="markdown",
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.add_typer(bench, name="bench")
+
+
+def main() -> None:
+    """Run the command line and answer what goes wrong in words a user can act on."""
+    if hasattr(signal, "SIGPIPE"):
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    arguments = sys.argv[1:]
+    try:
+        app(arguments, prog_name="pondhop")
+    except InvalidInput as error:
+        _print_invalid_input(error.faults, "--json" in arguments)
+        sys.exit(EXIT_INVALID_INPUT)
+    except OSError as error:
+        if error.filename is None:
+            _exit_with_bug(error, arguments)
+        fault = Fault(str(error.filename), error.strerror or str(error), "check the path, its permissions and the disk")
+        _print_invalid_input((fault,), "--json" in arguments)
+        sys.exit(EXIT_INVALID_INPUT)
+    except Exception as error:  # noqa: BLE001 - the last resort: a user never sees a traceback unasked
+        _exit_with_bug(error, arguments)
+
+
+@app.callback()
+def _pondhop(
+    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of a bug.")] = False,  # noqa: ARG001 - read by main
+    version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
+) -> None:
+    """Balanced routes and checked missions for drone fleets that sample aquaculture ponds.
+
+    Start with a farm of your own, or with one that pondhop makes up:
+
+    - `pondhop generate-farm --ponds 120 --at -90.9,33.4 -o farm.geojson`
+    - `pondhop plan farm.geojson --drones 5 -o tonight`
+
+    Exit codes: 0 done, 2 invalid input, 3 infeasible with `--require-feasible`, 1 a bug.
+    """
+    if version:
+        from pondhop import __version__
+
+        typer.echo(f"pondhop {__version__}")
+        raise typer.Exit
+
+
+for _command in (plan, solve, evaluate, plot, generate, generate_farm, train_am):
+    app.command(no_args_is_help=True)(_command)
+
+
+def _print_invalid_input(faults: tuple[Fault, ...], as_json: bool) -> None:
+    heading = f"pondhop: {len(faults)} {'problem' if len(faults) == 1 else 'problems'} in the input"
+    print_faults(faults, "invalid_input", heading, as_json)
+
+
+def _exit_with_bug(error: Exception, arguments: list[str]) -> NoReturn:
+    if "--debug" in arguments:
+        raise error
+    typer.echo(
+        f"pondhop: this is a bug in pondhop, not in your input: {type(error).__name__}: {error}\n"
+        f"Please report it with your file and what this prints: pondhop --debug {shlex.join(arguments)}",
+        err=True,
+    )
+    sys.exit(EXIT_BUG)

@@ -1,0 +1,122 @@
+"""``pondhop plan`` and what goes with real farms."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, Unpack
+
+import typer
+
+from pondhop.cli.shared import (
+    EXIT_INFEASIBLE,
+    Json,
+    RequireFeasible,
+    Seed,
+    parse_lonlat,
+    print_faults,
+    progress,
+    require_matplotlib,
+    search_progress,
+    with_planning_options,
+)
+from pondhop.errors import Fault, InvalidInput
+from pondhop.planners import PlainOptions
+
+if TYPE_CHECKING:
+    from pondhop.fleet import Fleet, SamplingStyle
+
+
+@with_planning_options
+def plan(
+    farm: Annotated[
+        Path,
+        typer.Argument(exists=True, help="GeoJSON, KML, KMZ, Shapefile, GeoPackage, or CSV of positions or corners."),
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for plan, picture and missions.")],
+    drones: Annotated[int | None, typer.Option(min=1, help="How many drones fly; all else is assumed.")] = None,
+    fleet: Annotated[
+        Path | None, typer.Option(exists=True, help="The fleet as a TOML file, instead of --drones.")
+    ] = None,
+    depot: Annotated[
+        str | None, typer.Option(metavar="LON,LAT", help="Where drones start and land, if the file does not say.")
+    ] = None,
+    sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
+    figure: Annotated[bool, typer.Option(help="Draw the plan (PNG and SVG).")] = True,
+    require_feasible: RequireFeasible = False,
+    as_json: Json = False,
+    **options: Unpack[PlainOptions],
+) -> None:
+    """Plan a round over a real farm: routes, a picture and one checked mission file per drone.
+
+    - `pondhop plan farm.geojson --drones 3 -o tonight`
+    - `pondhop plan farm.kml --drones 3 --depot -89.21,37.70 -o tonight`
+    - `pondhop plan farm.gpkg --fleet fleet.toml --sampling splashdown --no-figure -o tonight`
+
+    Everything wrong with the farm file is reported at once, each fault with its place and its remedy.
+    """
+    from pondhop import outputs, planners
+    from pondhop.farm.read import read_farm
+
+    if figure:
+        require_matplotlib()
+    chosen_fleet = _fleet(drones, fleet, sampling)
+    with progress("Planning", total=4 if figure else 3) as advance:
+        read = read_farm(farm, depot=parse_lonlat("--depot", depot) if depot is not None else None)
+        advance()
+        farm_plan = planners.plan(read, chosen_fleet, progress=search_progress(advance), **options)
+        advance()
+        written = outputs.write_outputs(output, farm_plan, has_figure=figure)
+        advance(size=2.0 if figure else 1.0)
+    if as_json:
+        typer.echo((output / outputs.PLAN_JSON).read_text(encoding="utf-8"), nl=False)
+    else:
+        from pondhop.cli import printed
+
+        printed.print_farm_plan(farm_plan)
+        typer.echo(f"Written to {output}: {', '.join(written.names)}")
+    if written.faults:
+        heading = "No mission was written, because this plan cannot be flown"
+        print_faults(written.faults, "no_missions", heading, as_json)
+    if require_feasible and (written.faults or not farm_plan.solution.plan.is_feasible):
+        raise typer.Exit(EXIT_INFEASIBLE)
+
+
+def generate_farm(
+    ponds: Annotated[int, typer.Option(min=1, help="How many ponds.")],
+    at: Annotated[str, typer.Option(metavar="LON,LAT", help="Where the farm lies.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="The GeoJSON file.")],
+    seed: Seed = 1,
+    missing_share: Annotated[float, typer.Option(min=0.0, max=0.9, help="Share of the ponds left out.")] = 0.0,
+    irregular: Annotated[bool, typer.Option(help="Give the farm an irregular outline.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Make up a real-world farm: ponds of 4-8 ha in blocks with levees and a yard, as in the Mississippi Delta.
+
+    - `pondhop generate-farm --ponds 700 --at -90.9,33.4 -o farm.geojson`
+    """
+    from pondhop.farm.made_up import generate_farm as generate
+    from pondhop.farm.write import write_farm
+
+    farm = generate(ponds, at=parse_lonlat("--at", at), seed=seed, missing_share=missing_share, irregular=irregular)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    write_farm(output, farm)
+    message = {"farm": str(output), "num_ponds": len(farm.ponds)}
+    typer.echo(json.dumps(message) if as_json else f"Written to {output}: {len(farm.ponds)} ponds")
+
+
+def _fleet(num_drones: int | None, path: Path | None, sampling: SamplingStyle | None) -> Fleet:
+    """Return the fleet of the options; one of ``--drones`` and ``--fleet`` says how many drones there are."""
+    from pondhop.fleet import Fleet, read_fleet
+
+    if num_drones is not None and path is not None:
+        raise InvalidInput([Fault("--drones, --fleet", "both say how many drones there are", "give one of them")])
+    if path is not None:
+        fleet = read_fleet(path)
+    elif num_drones is not None:
+        fleet = Fleet(num_drones)
+    else:
+        action = "give --drones N, or --fleet fleet.toml"
+        raise InvalidInput([Fault("--drones", "nothing says how many drones fly", action)])
+    return fleet if sampling is None else replace(fleet, sampling=sampling)

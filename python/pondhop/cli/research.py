@@ -1,0 +1,237 @@
+"""``pondhop solve`` and what goes with research farms: judging, drawing and generating."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, Unpack
+
+import typer
+
+from pondhop.cli.shared import (
+    EXIT_INFEASIBLE,
+    EXIT_INTERRUPTED,
+    Json,
+    RequireFeasible,
+    Seed,
+    progress,
+    require_matplotlib,
+    search_progress,
+    with_planning_options,
+)
+from pondhop.errors import Fault, InvalidInput
+from pondhop.planners import PlainOptions
+
+if TYPE_CHECKING:
+    from pondhop.files.routes_json import Judgement
+    from pondhop.instances import ResearchFarm
+    from pondhop.solution import Solution
+
+FarmsOption = Annotated[Path | None, typer.Option(help="The research farms that the plans are for.")]
+
+
+@with_planning_options
+def solve(
+    farms: Annotated[Path, typer.Argument(exists=True, help="Research farms as JSON, or a TSPLIB .tsp file.")],
+    routes: Annotated[int, typer.Option(min=1, help="At most this many routes a farm.")],
+    start: Annotated[
+        Path | None, typer.Option(exists=True, help="Plans of 'pondhop solve' that the search begins with.")
+    ] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="File for the plans; else stdout.")] = None,
+    require_feasible: RequireFeasible = False,
+    as_json: Json = False,
+    **options: Unpack[PlainOptions],
+) -> None:
+    """Plan every farm of a research file and write the routes as JSON, one object a farm.
+
+    - `pondhop solve farms.json --routes 5 -o plans.json`
+    - `pondhop solve farms.json --routes 5 --time-limit 0.1 --slack 1 -o plans.json`
+    - `pondhop solve kroa200.tsp --routes 3 --planner hpp --seed 7`
+
+    Ctrl-C ends the search of a farm with the best plan so far, and writes the plans of the farms until then.
+
+    The fields of an object:
+
+    - `index` of the farm in the file, `planner`, `seed`
+    - `elapsed_s`: wall time from coordinates to finished routes; reading and writing files is not in it
+    - `routes`: 0-based pond indices in flying order, the depot implied at both ends
+    - `route_lengths`, `max_route_length`, `total_length` in the units of the farm
+    - `lower_bound`: no plan has a shorter longest route
+
+    Every pond is in exactly one route, and there are at most `--routes` of them.
+    """
+    from pondhop import planners
+    from pondhop.files.routes_json import read_routes, solutions_json
+
+    read = _research_farms(farms)
+    starts = read_routes(start) if start is not None else None
+    if starts is not None:
+        _check_same_number(read, starts)
+    solutions: list[Solution] = []
+    with progress("Planning", total=len(read)) as advance:
+        for index, farm in enumerate(read):
+            problem = farm.to_problem(routes)
+            solution = planners.solve(
+                problem,
+                start=starts[index] if starts is not None else None,
+                progress=search_progress(advance),
+                **options,
+            )
+            solutions.append(solution)
+            advance()
+            if solution.is_interrupted:
+                break
+    text = solutions_json(solutions)
+    if output is not None:
+        _write_text(output, text)
+    if output is None or as_json:
+        typer.echo(text, nl=False)
+    else:
+        from pondhop.cli import printed
+
+        printed.print_solutions(solutions)
+    if solutions[-1].is_interrupted:
+        typer.echo(f"pondhop: stopped; {len(solutions)} of {len(read)} farms are planned", err=True)
+        raise typer.Exit(EXIT_INTERRUPTED)
+    if require_feasible and not all(solution.plan.is_feasible for solution in solutions):
+        raise typer.Exit(EXIT_INFEASIBLE)
+
+
+def evaluate(
+    plans: Annotated[Path, typer.Argument(exists=True, help="plan.json of a farm, or the plans of 'pondhop solve'.")],
+    farms: FarmsOption = None,
+    routes: Annotated[
+        int | None, typer.Option(min=1, help="How many routes are allowed; else as many as used.")
+    ] = None,
+    require_feasible: RequireFeasible = False,
+    as_json: Json = False,
+) -> None:
+    """Judge plans: lengths, durations and broken rules, recomputed from the bare routes.
+
+    - `pondhop evaluate tonight/plan.json`
+    - `pondhop evaluate plans.json --farms farms.json --routes 5 --json`
+
+    Any program's plans can be judged: a JSON list of objects with `routes`, 0-based pond indices in flying order.
+    """
+    from pondhop.cli import printed
+
+    if farms is None:
+        from pondhop.files.plan_json import read_plan_json
+
+        farm_plan = read_plan_json(plans)
+        if as_json:
+            typer.echo(plans.read_text(), nl=False)
+        else:
+            printed.print_farm_plan(farm_plan)
+        is_feasible = farm_plan.solution.plan.is_feasible
+    else:
+        judgements = _judgements(plans, farms, routes)
+        if as_json:
+            typer.echo(json.dumps([asdict(judgement) for judgement in judgements], indent=1))
+        else:
+            printed.print_judgements(judgements)
+        is_feasible = all(judgement.is_feasible for judgement in judgements)
+    if require_feasible and not is_feasible:
+        raise typer.Exit(EXIT_INFEASIBLE)
+
+
+def plot(
+    plans: Annotated[Path, typer.Argument(exists=True, help="plan.json of a farm, or the plans of 'pondhop solve'.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="The picture, .png or .svg.")],
+    farms: FarmsOption = None,
+    index: Annotated[int, typer.Option(min=0, help="Which of the research farms, from 0.")] = 0,
+    as_json: Json = False,
+) -> None:
+    """Draw a plan: outline, ponds, depot and routes, with their lengths in the legend.
+
+    - `pondhop plot tonight/plan.json -o tonight/plan.svg`
+    - `pondhop plot plans.json --farms farms.json --index 3 -o farm3.png`
+    """
+    require_matplotlib()
+    if output.suffix.lower() not in (".png", ".svg"):
+        raise InvalidInput([Fault("--output", f"{output} is neither .png nor .svg", "let the name end in one of them")])
+    from pondhop import plot as figures
+
+    with progress("Drawing", total=1) as advance:
+        if farms is None:
+            from pondhop.files.plan_json import read_plan_json
+
+            axes = figures.plot_plan(read_plan_json(plans))
+        else:
+            farm, routes = _farm_and_routes(plans, farms, index)
+            axes = figures.plot_solution(farm.to_problem(max(1, len(routes))), routes, boundary=farm.boundary)
+        figures.save_figure(axes, output)
+        advance()
+    typer.echo(json.dumps({"figure": str(output)}) if as_json else f"Written: {output}")
+
+
+def generate(
+    ponds: Annotated[int, typer.Option(min=1, help="Ponds a farm.")],
+    farms: Annotated[int, typer.Option(min=1, help="How many farms.")] = 1,
+    seed: Seed = 1,
+    variant: Annotated[
+        Literal["authors", "paper"],
+        typer.Option(help="As the paper's authors coded their farms, or as the paper describes them."),
+    ] = "authors",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="File for the farms; else stdout.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Draw research farms as the paper does: a grid of ponds in a random outline, in the unit square.
+
+    - `pondhop generate --ponds 300 --farms 100 --seed 1 -o farms.json`
+    """
+    from pondhop import instances
+
+    drawn = instances.generate(ponds, farms, seed=seed, variant=variant)
+    if output is not None:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        instances.write_farms(output, drawn)
+    if output is None or as_json:
+        typer.echo(instances.farms_json(drawn), nl=False)
+    else:
+        typer.echo(f"Written to {output}: {farms} farms of {ponds} ponds")
+
+
+def _research_farms(path: Path) -> list[ResearchFarm]:
+    from pondhop import instances
+
+    return instances.read(path)
+
+
+def _judgements(plans: Path, farms: Path, num_routes: int | None) -> list[Judgement]:
+    from pondhop.files.routes_json import judge, read_routes
+
+    routes_of_farms = read_routes(plans)
+    read = _research_farms(farms)
+    _check_same_number(read, routes_of_farms)
+    judgements = []
+    with progress("Evaluating", total=len(read)) as advance:
+        for index, (farm, routes) in enumerate(zip(read, routes_of_farms, strict=True)):
+            problem = farm.to_problem(num_routes or max(1, len(routes)))
+            judgements.append(judge(index, problem, routes))
+            advance()
+    return judgements
+
+
+def _farm_and_routes(plans: Path, farms: Path, index: int) -> tuple[ResearchFarm, list[list[int]]]:
+    from pondhop.files.routes_json import read_routes
+
+    routes = read_routes(plans)
+    read = _research_farms(farms)
+    _check_same_number(read, routes)
+    if index >= len(read):
+        action = f"give 0 to {len(read) - 1}"
+        raise InvalidInput([Fault("--index", f"there is no farm {index} in {farms}", action)])
+    return read[index], routes[index]
+
+
+def _check_same_number(farms: list[ResearchFarm], routes: list[list[list[int]]]) -> None:
+    if len(farms) != len(routes):
+        message = f"{len(routes)} plans for {len(farms)} farms"
+        raise InvalidInput([Fault("--farms", message, "give the farms that were solved, in the same order")])
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)

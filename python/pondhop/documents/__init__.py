@@ -1,0 +1,1 @@
+"""Text documents: written all or none, and JSON read and checked against its schema."""

@@ -1,0 +1,87 @@
+"""A farm as a value: its ponds, depot, stations and areas, in WGS84 longitude and latitude."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pondhop._core import LocalFrame, Problem
+from pondhop.fleet import Fleet
+from pondhop.places import Area, LonLat
+
+
+@dataclass(frozen=True)
+class Pond:
+    """A pond.
+
+    Attributes
+    ----------
+    id
+        Unique on its farm.
+    sampling_point
+        Where a drone samples: longitude, latitude in degrees.
+    outline
+        Rings of the polygon, the outer one first, each closed; empty for a pond given as a point.
+    service_s
+        Time on station if it differs from that of the fleet.
+    """
+
+    id: str
+    sampling_point: LonLat
+    outline: Area = ()
+    service_s: float | None = None
+
+
+@dataclass(frozen=True)
+class Farm:
+    """A farm as read from a file; see `pondhop.read_farm`.
+
+    Attributes
+    ----------
+    name
+        For tables and titles.
+    ponds
+        In the order of the file; a pond's index here is its index in a plan's routes.
+    depot
+        Longitude and latitude in degrees.
+    stations, no_fly, fences
+        Other features of the file.
+    notes
+        What the reader assumed or changed, a sentence each.
+    """
+
+    name: str
+    ponds: tuple[Pond, ...]
+    depot: LonLat
+    stations: tuple[LonLat, ...] = ()
+    no_fly: tuple[Area, ...] = ()
+    fences: tuple[Area, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def to_problem(self, fleet: Fleet) -> Problem:
+        """The planning task in metres, in the local frame whose origin is the depot.
+
+        Parameters
+        ----------
+        fleet
+            The drones; its time on station applies to every pond without its own.
+
+        Returns
+        -------
+        Problem
+            Pond i is ``ponds[i]``.
+        """
+        sampling_points = np.array([pond.sampling_point for pond in self.ponds], dtype=np.float64)
+        return Problem(
+            (0.0, 0.0),
+            LocalFrame(*self.depot).to_local(sampling_points),
+            fleet.num_drones,
+            service_durations_s=np.array(
+                [fleet.service_s if pond.service_s is None else pond.service_s for pond in self.ponds]
+            ),
+            speed_m_s=fleet.speed_m_s,
+            leg_stop_s=fleet.leg_stop_s,
+            max_length_m=np.inf if fleet.max_route_length_m is None else fleet.max_route_length_m,
+            max_duration_s=np.inf if fleet.max_route_duration_s is None else fleet.max_route_duration_s,
+        )

@@ -1,0 +1,57 @@
+"""Farms as GeoJSON files, which `pondhop.read_farm` reads back."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from pondhop.farm.model import Farm, Pond
+from pondhop.places import Area, LonLat
+
+DECIMALS = 7
+"""Decimals of degrees in written files: about a centimetre."""
+
+
+def write_farm(path: str | Path, farm: Farm) -> None:
+    """Write a farm as GeoJSON, one feature a line, with 7 decimals (a centimetre); `read_farm` reads it back.
+
+    Notes are not written: they tell of the reading, not of the farm.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    features = [
+        _feature_json({"id": pond.id}, pond)
+        if pond.service_s is None
+        else _feature_json({"id": pond.id, "service_s": pond.service_s}, pond)
+        for pond in farm.ponds
+    ]
+    features.append(_point_json({"role": "depot"}, farm.depot))
+    features.extend(_point_json({"role": "station"}, station) for station in farm.stations)
+    features.extend(_polygon_json({"role": "no_fly"}, area) for area in farm.no_fly)
+    features.extend(_polygon_json({"role": "fence"}, area) for area in farm.fences)
+    lines = ",\n".join(json.dumps(feature, separators=(",", ":"), allow_nan=False) for feature in features)
+    head = f'{{"type":"FeatureCollection","name":{json.dumps(farm.name)},"features":[\n'
+    Path(path).write_text(f"{head}{lines}\n]}}\n", encoding="utf-8")
+
+
+def _feature_json(properties: dict[str, object], pond: Pond) -> dict[str, object]:
+    if not pond.outline:
+        return _point_json(properties, pond.sampling_point)
+    return _polygon_json({**properties, "sampling_point": _rounded(pond.sampling_point)}, pond.outline)
+
+
+def _point_json(properties: dict[str, object], point: LonLat) -> dict[str, object]:
+    geometry = {"type": "Point", "coordinates": _rounded(point)}
+    return {"type": "Feature", "properties": properties, "geometry": geometry}
+
+
+def _polygon_json(properties: dict[str, object], area: Area) -> dict[str, object]:
+    geometry = {"type": "Polygon", "coordinates": [[_rounded(position) for position in ring] for ring in area]}
+    return {"type": "Feature", "properties": properties, "geometry": geometry}
+
+
+def _rounded(position: LonLat) -> list[float]:
+    return [round(position[0], DECIMALS), round(position[1], DECIMALS)]
