@@ -6,11 +6,11 @@
 //! copying what it touched, so that its cost does not depend on the size of the plan.
 
 use super::airspace::Airspace;
-use super::budget::Effort;
 use super::network::Network;
 use super::recreate::{Objective, Rank, Recreate};
 use super::ruin::Ruin;
 use super::state::{Difference, State, Touched};
+use crate::effort::Effort;
 use crate::random::Random;
 
 /// Share of the steps that start on the longest route.

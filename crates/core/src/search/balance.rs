@@ -15,11 +15,11 @@
 //! Smoothing costs O(n) for its buffers and about O(visits), one set O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a
 //! bounded number of sets tried.
 
-use super::budget::Budget;
 use super::construct::improve_route;
 use super::improve::Room;
 use super::network::Network;
 use super::state::{AFTER, BEFORE, State, Touched};
+use crate::effort::Budget;
 
 /// Visits in a run, at most.
 const MAX_RUN: usize = 2;

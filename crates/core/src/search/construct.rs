@@ -7,9 +7,9 @@
 //! begins at the widest gap, which is where the farm ends if the depot is at its edge. Which petals are best cannot be seen
 //! from the sectors, so the search starts from several cuts. O(n log n).
 
-use super::budget::Budget;
 use super::improve::{Room, improve_ring};
 use super::network::Network;
+use crate::effort::Budget;
 use crate::geometry::Point;
 
 /// The visits by their angle around the depot, and what that order makes of them.

@@ -4,8 +4,8 @@
 //! don't-look bits kept as a queue, reversal of the shorter side. Rings are arrays here, unlike in [`super::state`], because
 //! 2-opt turns paths round.
 
-use super::budget::Budget;
 use super::network::Network;
+use crate::effort::Budget;
 
 /// Neighbours tried per visit: on a lattice, the ring of eight and two more.
 const NUM_TRIED: usize = 10;

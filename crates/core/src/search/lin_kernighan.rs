@@ -15,10 +15,10 @@
 //! Nodes whose moves failed wait until a leg of theirs has changed (don't-look bits, Bentley, ORSA J. Computing 1992). Looking
 //! at a node costs O(1), a walk O(legs changed), and making a move O(visits of the routes it changes).
 
-use super::budget::Budget;
 use super::moves::{Cut, MAX_CUTS, Move};
 use super::network::{Network, leg_of_length};
 use super::state::{AFTER, BEFORE, State};
+use crate::effort::Budget;
 use crate::geometry::Point;
 
 /// Ways to go on that are tried after each cut but the last; after the last but one, a move is only closed.

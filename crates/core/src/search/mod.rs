@@ -19,7 +19,6 @@ mod airspace;
 mod anneal;
 mod assemble;
 mod balance;
-mod budget;
 mod construct;
 mod cooperate;
 mod cycles;
@@ -37,13 +36,12 @@ mod state;
 #[cfg(test)]
 mod testing;
 
+use crate::effort::{Budget, Clock, Effort, Watch};
 use crate::problem::Problem;
 pub(crate) use airspace::Airspace;
 use airspace::SharedAirspace;
 pub(crate) use anneal::{Chain, Schedule};
 use balance::balance;
-pub(crate) use budget::{Budget, Effort};
-pub use budget::{Clock, Progress, Watch};
 use construct::Sweep;
 pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap, pseudo_angle};
 use cooperate::Meeting;

@@ -9,12 +9,12 @@ use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
 use super::assemble::assemble;
 use super::balance::balance;
-use super::budget::Effort;
 use super::construct::Sweep;
 use super::recombine::cross;
 use super::recreate::Objective;
 use super::state::{RouteCosts, State};
 use super::{MAX_HEAT, Search, improve_routes};
+use crate::effort::Effort;
 use crate::random::Random;
 
 /// Share of the effort at which the race of the starts ends.

@@ -10,10 +10,10 @@
 //!
 //! O(n log n) for n visits; after the sorting everything is O(n).
 
-use super::budget::Budget;
 use super::construct::{ends_by_cost, pseudo_angle};
 use super::network::Network;
 use super::smooth::{Path, Places, Rows};
+use crate::effort::Budget;
 use crate::geometry::{Point, cross, dot};
 
 /// Visits that the pitch and the direction of the grid are taken from.

@@ -12,11 +12,11 @@
 mod cuts;
 mod hulls;
 
+use crate::effort::{Budget, Clock, Effort};
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::search::{
-    Budget, Chain, Clock, Effort, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg,
-    to_indices,
+    Chain, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg, to_indices,
 };
 use cuts::{Cut, Cutter, Draw};
 use hulls::Hulls;
