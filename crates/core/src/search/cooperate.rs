@@ -5,7 +5,7 @@
 
 use super::airspace::Airspace;
 use super::anneal::Chain;
-use super::recreate::Rank;
+use super::objective::Rank;
 use super::state::State;
 use std::sync::{Barrier, Mutex, PoisonError};
 

@@ -26,6 +26,7 @@ mod improve;
 mod lin_kernighan;
 mod moves;
 mod network;
+mod objective;
 mod population;
 mod recombine;
 mod recreate;
@@ -47,9 +48,9 @@ pub(crate) use construct::{curve_keys, improve_routes, open_at_best_leg, place_a
 use cooperate::Meeting;
 use lin_kernighan::shorten;
 pub(crate) use network::Network;
+pub(crate) use objective::Objective;
+use objective::Rank;
 use population::Population;
-pub(crate) use recreate::Objective;
-use recreate::Rank;
 use rough::RoughPlan;
 pub(crate) use state::State;
 
@@ -297,7 +298,7 @@ impl Search<'_> {
 
     fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain<SharedAirspace> {
         let state = State::new(self.network, routes);
-        let objective = Objective::longest_route(self.network, &state);
+        let objective = Objective::longest_route(self.network.num_routes, state.costs());
         Chain::new(self.network, state, objective, self.seed(stream), SharedAirspace)
     }
 

@@ -10,9 +10,9 @@ use super::anneal::{Chain, Schedule};
 use super::assemble::assemble;
 use super::balance::balance;
 use super::construct::Sweep;
+use super::objective::{Objective, RouteCosts};
 use super::recombine::cross;
-use super::recreate::Objective;
-use super::state::{RouteCosts, State};
+use super::state::State;
 use super::{MAX_HEAT, Search, improve_routes};
 use crate::effort::Effort;
 use crate::random::Random;
@@ -160,7 +160,7 @@ impl Population {
         let keeper = self.random.below(self.chains.len());
         let giver = (keeper + 1 + self.random.below(self.chains.len() - 1)) % self.chains.len();
         let state = cross(search.network, &self.chains[keeper].best, &self.chains[giver].best, &mut self.random);
-        let objective = Objective::longest_route(search.network, &state);
+        let objective = Objective::longest_route(search.network.num_routes, state.costs());
         Chain::new(search.network, state, objective, self.random.bits(), SharedAirspace)
     }
 
@@ -183,12 +183,12 @@ impl Population {
         let mut is_balanced = false;
         if let Some(mut shorter) = self.assemble_all(search, &child.best, objective.target, crowding) {
             balance(search.network, search.budget, &mut shorter);
-            if objective.value(&shorter) < objective.value(&child.best) {
+            if objective.value(shorter.costs()) < objective.value(child.best.costs()) {
                 child.adopt(&shorter);
                 is_balanced = true;
             }
         }
-        let value = |costs: &[f64]| objective.value_of(RouteCosts::of(costs));
+        let value = |costs: &[f64]| objective.value(RouteCosts::of(costs));
         if let Some(better) = self.assemble_all(search, &child.best, objective.target, value) {
             child.adopt(&better);
             is_balanced = false;

@@ -9,7 +9,8 @@
 use super::airspace::SharedAirspace;
 use super::construct::pseudo_angle;
 use super::network::Network;
-use super::recreate::{Objective, Recreate};
+use super::objective::Objective;
+use super::recreate::Recreate;
 use super::state::{ABSENT, State, Touched};
 use crate::random::Random;
 
@@ -72,7 +73,7 @@ fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], 
     let missing: Vec<u32> =
         (0..network.num_visits as u32).filter(|&visit| child.nodes[visit as usize].route == ABSENT).collect();
     let target = keeper.max_route_cost().min(giver.max_route_cost());
-    let objective = Objective { target, ..Objective::longest_route(network, keeper) };
+    let objective = Objective { target, ..Objective::longest_route(network.num_routes, keeper.costs()) };
     let is_complete = Recreate::new(network).insert(
         network,
         &mut child,

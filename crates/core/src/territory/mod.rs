@@ -57,7 +57,7 @@ pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<u
     let mut random = Random::new(seed);
     let tours = best_tours(network, &budget, &mut random);
     let state = State::new(network, &tours);
-    let objective = Objective::longest_route(network, &state);
+    let objective = Objective::longest_route(network.num_routes, state.costs());
     let mut chain = Chain::new(network, state, objective, seed, Hulls::new(network, &tours));
     let mut effort = Effort::new(&budget);
     anneal(network, &mut effort, &mut chain, MAX_END, MAX_HEAT);
