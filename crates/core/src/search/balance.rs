@@ -15,8 +15,7 @@
 //! Smoothing costs O(n) for its buffers and about O(visits), one set O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a
 //! bounded number of sets tried.
 
-use super::construct::improve_route;
-use super::improve::Room;
+use super::improve::{Room, improve_route};
 use super::network::Network;
 use super::state::{AFTER, BEFORE, State, Touched};
 use crate::effort::Budget;

@@ -7,10 +7,8 @@
 //! begins at the widest gap, which is where the farm ends if the depot is at its edge. Which petals are best cannot be seen
 //! from the sectors, so the search starts from several cuts. O(n log n).
 
-use super::improve::{Room, improve_ring};
 use super::network::Network;
-use crate::effort::Budget;
-use crate::geometry::Point;
+use super::order::{curve_keys, ends_by_cost, place_after_widest_gap, pseudo_angle};
 
 /// The visits by their angle around the depot, and what that order makes of them.
 pub(super) struct Sweep<'a> {
@@ -75,107 +73,4 @@ pub(crate) fn open_at_best_leg(network: &Network, route: &mut [u32]) {
         }
     }
     route.rotate_left(best);
-}
-
-/// Improves each route on its own by 2-opt and Or-opt, and stops between two moves when the time is over.
-pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
-    let mut room = Room::new(network);
-    for visits in routes {
-        let queue = visits.iter().rev().copied().collect();
-        improve_route(network, budget, visits, queue, &mut room);
-    }
-}
-
-/// Improves one route, from the visits of it that are in `queue`. Returns whether it did anything.
-pub(super) fn improve_route(
-    network: &Network,
-    budget: &Budget<'_>,
-    visits: &mut Vec<u32>,
-    queue: Vec<u32>,
-    room: &mut Room,
-) -> bool {
-    let depot = network.num_visits as u32;
-    visits.push(depot);
-    let has_moved = improve_ring(network, budget, visits, queue, room);
-    let place = visits.iter().position(|&node| node == depot).unwrap_or(0);
-    visits.rotate_left(place);
-    visits.remove(0);
-    has_moved
-}
-
-/// Ends of new sectors, each with its share of the cost, were cost spread evenly within each old sector.
-pub(super) fn ends_by_cost(old_ends: &[usize], old_costs: &[f64], shares: &[f64]) -> Vec<usize> {
-    let cost_of_a_share = old_costs.iter().sum::<f64>() / shares.iter().sum::<f64>();
-    let mut ends = vec![0];
-    let (mut sum, mut goal) = (0.0, shares[0] * cost_of_a_share);
-    for (range, cost) in old_ends.windows(2).zip(old_costs) {
-        let size = range[1] - range[0];
-        for place in 0..size {
-            sum += cost / size as f64;
-            if sum >= goal && ends.len() < shares.len() {
-                goal += shares[ends.len()] * cost_of_a_share;
-                ends.push(range[0] + place + 1);
-            }
-        }
-    }
-    ends.resize(shares.len() + 1, old_ends[old_ends.len() - 1]);
-    ends
-}
-
-/// Grows with the angle of `(x, y)` from 0 to 4, without trigonometry: the same on every machine.
-pub(crate) fn pseudo_angle(x: f64, y: f64) -> f64 {
-    let norm = x.abs() + y.abs();
-    if norm == 0.0 {
-        return 0.0;
-    }
-    let ratio = x / norm;
-    if y >= 0.0 { 1.0 - ratio } else { 3.0 + ratio }
-}
-
-pub(crate) fn place_after_widest_gap(keyed: &[(f64, u32)]) -> usize {
-    let last = keyed.len() - 1;
-    let (mut place, mut widest) = (0, keyed[0].0 + 4.0 - keyed[last].0);
-    for (index, pair) in keyed.windows(2).enumerate() {
-        if pair[1].0 - pair[0].0 > widest {
-            (place, widest) = (index + 1, pair[1].0 - pair[0].0);
-        }
-    }
-    place
-}
-
-/// Place of each point along a Hilbert curve over the bounding square.
-pub(crate) fn curve_keys(points: &[Point]) -> Vec<u32> {
-    let (mut low, mut high) = (points[0], points[0]);
-    for point in points {
-        low = Point::new(low.x.min(point.x), low.y.min(point.y));
-        high = Point::new(high.x.max(point.x), high.y.max(point.y));
-    }
-    let side = (high.x - low.x).max(high.y - low.y).max(f64::MIN_POSITIVE);
-    let scale = f64::from(CURVE_SIDE - 1) / side;
-    points
-        .iter()
-        .map(|point| curve_key(((point.x - low.x) * scale) as u32, ((point.y - low.y) * scale) as u32))
-        .collect()
-}
-
-/// Cells along one side of the Hilbert curve.
-const CURVE_SIDE: u32 = 1 << 16;
-
-/// Position of a cell on the Hilbert curve.
-fn curve_key(mut x: u32, mut y: u32) -> u32 {
-    let mut key = 0;
-    let mut side = CURVE_SIDE / 2;
-    while side > 0 {
-        let (right, upper) = (u32::from(x & side > 0), u32::from(y & side > 0));
-        key += side * side * ((3 * right) ^ upper);
-        if upper == 0 {
-            if right == 1 {
-                x = !x & (CURVE_SIDE - 1);
-                y = !y & (CURVE_SIDE - 1);
-            }
-            std::mem::swap(&mut x, &mut y);
-        }
-        side >>= 1;
-    }
-    key
 }

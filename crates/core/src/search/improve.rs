@@ -38,16 +38,36 @@ struct Ring<'a> {
     is_queued: &'a mut [bool],
 }
 
-/// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
-/// it or the time is over. Looks at `queue` first, the last of it first, and else only at what its moves touch: all visits that
-/// such a move might begin at. Returns whether it did anything.
-pub(crate) fn improve_ring(
+/// Improves each route on its own by 2-opt and Or-opt, and stops between two moves when the time is over.
+pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
+    let mut room = Room::new(network);
+    for visits in routes {
+        let queue = visits.iter().rev().copied().collect();
+        improve_route(network, budget, visits, queue, &mut room);
+    }
+}
+
+/// Improves one route, from the visits of it that are in `queue`. Returns whether it did anything.
+pub(crate) fn improve_route(
     network: &Network,
     budget: &Budget<'_>,
-    order: &mut [u32],
+    visits: &mut Vec<u32>,
     queue: Vec<u32>,
     room: &mut Room,
 ) -> bool {
+    let depot = network.num_visits as u32;
+    visits.push(depot);
+    let has_moved = improve_ring(network, budget, visits, queue, room);
+    let place = visits.iter().position(|&node| node == depot).unwrap_or(0);
+    visits.rotate_left(place);
+    visits.remove(0);
+    has_moved
+}
+
+/// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
+/// it or the time is over. Looks at `queue` first, the last of it first, and else only at what its moves touch: all visits that
+/// such a move might begin at. Returns whether it did anything.
+fn improve_ring(network: &Network, budget: &Budget<'_>, order: &mut [u32], queue: Vec<u32>, room: &mut Room) -> bool {
     if order.len() < 5 || budget.is_time_over() {
         return false;
     }

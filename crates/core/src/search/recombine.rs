@@ -7,9 +7,9 @@
 //! (HGA). Changed: the routes taken lie side by side, so that only the seam between the parents has to be mended. O(n).
 
 use super::airspace::SharedAirspace;
-use super::construct::pseudo_angle;
 use super::network::Network;
 use super::objective::Objective;
+use super::order::pseudo_angle;
 use super::recreate::Recreate;
 use super::state::{ABSENT, State, Touched};
 use crate::random::Random;

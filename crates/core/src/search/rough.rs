@@ -10,8 +10,8 @@
 //!
 //! O(n log n) for n visits; after the sorting everything is O(n).
 
-use super::construct::{ends_by_cost, pseudo_angle};
 use super::network::Network;
+use super::order::{ends_by_cost, pseudo_angle};
 use super::smooth::{Path, Places, Rows};
 use crate::effort::Budget;
 use crate::geometry::{Point, cross, dot};
