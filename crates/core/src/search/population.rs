@@ -10,11 +10,11 @@ use super::anneal::{Chain, Schedule};
 use super::assemble::assemble;
 use super::balance::balance;
 use super::construct::Sweep;
+use super::context::{MAX_HEAT, Search};
 use super::improve::improve_routes;
 use super::objective::{Objective, RouteCosts};
 use super::recombine::cross;
 use super::state::State;
-use super::{MAX_HEAT, Search};
 use crate::effort::Effort;
 use crate::random::Random;
 

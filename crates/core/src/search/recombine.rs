@@ -93,8 +93,9 @@ mod tests {
     use crate::generate::{Variant, generate};
     use crate::geometry::Point;
     use crate::problem::Problem;
+    use crate::search::run::to_nodes;
     use crate::search::testing::{self, research_network};
-    use crate::search::{Options, solve, to_nodes};
+    use crate::search::{Options, solve};
 
     #[test]
     fn a_giver_with_one_route_makes_a_twin_of_the_keeper() {
