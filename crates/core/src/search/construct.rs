@@ -11,7 +11,7 @@ use super::network::Network;
 use super::order::{curve_keys, ends_by_cost, place_after_widest_gap, pseudo_angle};
 
 /// The visits by their angle around the depot, and what that order makes of them.
-pub(super) struct Sweep<'a> {
+pub(super) struct Sectors<'a> {
     network: &'a Network,
     /// Sorted by angle; the first follows the widest gap.
     visits: Vec<u32>,
@@ -19,7 +19,7 @@ pub(super) struct Sweep<'a> {
     curve_keys: Vec<u32>,
 }
 
-impl<'a> Sweep<'a> {
+impl<'a> Sectors<'a> {
     pub fn new(network: &'a Network) -> Self {
         let depot = network.depot();
         let points = &network.points[..network.num_visits];
@@ -35,7 +35,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// One route from each of as many sectors as there are `shares`; the cost of a sector's curve is about its share of all.
-    pub fn sectors(&self, shares: &[f64]) -> Vec<Vec<u32>> {
+    pub fn routes(&self, shares: &[f64]) -> Vec<Vec<u32>> {
         let num_visits = self.network.num_visits;
         let mut ends = ends_by_cost(&[0, num_visits], &[1.0], shares);
         let mut routes = self.tour_sectors(&ends);

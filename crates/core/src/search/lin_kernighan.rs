@@ -15,7 +15,7 @@
 //! Nodes whose moves failed wait until a leg of theirs has changed (don't-look bits, Bentley, ORSA J. Computing 1992). Looking
 //! at a node costs O(1), a walk O(legs changed), and making a move O(visits of the routes it changes).
 
-use super::moves::{Cut, MAX_CUTS, Move};
+use super::moves::{CutLeg, MAX_CUTS, Move};
 use super::network::{Network, leg_of_length};
 use super::state::{AFTER, BEFORE, State};
 use crate::effort::Budget;
@@ -188,7 +188,7 @@ impl<'a> Routes<'a> {
 
     /// The leg of `node` back or forth, reached along the leg `added`.
     #[inline]
-    fn cut(&self, node: u32, is_forth: bool, added: f64) -> Cut {
+    fn cut(&self, node: u32, is_forth: bool, added: f64) -> CutLeg {
         let place = &self.places[node as usize];
         let to = place.links[usize::from(is_forth)];
         let (position, head, leg) = if is_forth {
@@ -197,7 +197,7 @@ impl<'a> Routes<'a> {
             let before = &self.places[to as usize];
             (before.position, before.cost, before.legs[AFTER])
         };
-        Cut { route: place.route, position, from: node, to, is_forth, head, head_and_leg: head + leg, added }
+        CutLeg { route: place.route, position, from: node, to, is_forth, head, head_and_leg: head + leg, added }
     }
 
     /// Looks for a move that gains among those that begin with the cuts of `change`, which save `gain` more than the legs

@@ -9,7 +9,7 @@ use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
 use super::assemble::assemble;
 use super::balance::balance;
-use super::construct::Sweep;
+use super::construct::Sectors;
 use super::context::{MAX_HEAT, Search};
 use super::improve::improve_routes;
 use super::objective::{Objective, RouteCosts};
@@ -64,10 +64,10 @@ impl Population {
     /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until those are left that
     /// can have enough children: one, if there is no effort for children.
     pub fn race(search: &Search<'_>, effort: &mut Effort<'_>, thread: usize) -> Self {
-        let sweep = Sweep::new(search.network);
+        let sectors = Sectors::new(search.network);
         let start = |index: usize| {
             let stream = (index * search.options.num_threads + thread) as u64;
-            let mut routes = sweep.sectors(&shares(search, stream));
+            let mut routes = sectors.routes(&shares(search, stream));
             improve_routes(search.network, search.budget, &mut routes);
             search.chain_from(&routes, stream)
         };

@@ -3,7 +3,7 @@
 use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
 use super::balance::balance;
-use super::construct::Sweep;
+use super::construct::Sectors;
 use super::context::{MAX_HEAT, Search, TOTAL_HEAT};
 use super::cooperate::Meeting;
 use super::improve::improve_routes;
@@ -157,10 +157,10 @@ impl Thread<'_> {
     /// A start for the least total: as few routes as the drones' limit allows, because every route costs two depot legs, and no
     /// later step is wide enough to give up a long one.
     fn fewest_routes(&self) -> Chain<SharedAirspace> {
-        let sweep = Sweep::new(self.search.network);
+        let sectors = Sectors::new(self.search.network);
         let mut num_routes = 1;
         loop {
-            let mut routes = sweep.sectors(&vec![1.0; num_routes]);
+            let mut routes = sectors.routes(&vec![1.0; num_routes]);
             improve_routes(self.search.network, self.search.budget, &mut routes);
             let chain = self.search.chain_from(&routes, self.index as u64);
             if num_routes == self.search.network.num_routes || chain.best.max_route_cost() <= self.search.goal_cap() {
