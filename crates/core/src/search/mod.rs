@@ -3,52 +3,31 @@
 //! Problem: one depot, m equal drones, every visit once; the single-depot min-max multiple travelling salesman problem, with
 //! service times and a fixed time per leg. Costs are seconds, which in a research instance are length units.
 //!
-//! Method ([`solve`]): balanced sectors around the depot (`construct`), each toured and improved by 2-opt and Or-opt
-//! (`improve`); if the effort allows, a race of several cuts of the sectors (`population`); from the winner, ruin (`ruin`) and
-//! recreate (`recreate`) under annealing (`anneal`), or, with more effort, children of the best plans (`recombine`), annealed
-//! likewise and given what is better in the other plans (`cycles`, `assemble`); exchanges that even out the routes (`balance`),
-//! for the last of the race, for the children and for the plan that is best in the end, which is first made shorter by deep
-//! moves over all routes (`lin_kernighan`, `moves`); all that for the longest route, then annealing for the total with the
-//! longest route as a limit. Threads share their best plans now and then (`cooperate`). A time too short for all that goes into
-//! a rough plan (`rough`): sectors toured along strips, smoothed without neighbour lists (`smooth`) and balanced.
+//! The modules, in reading order; each uses only those before it, and this one alone chooses the engine:
 //!
-//! One step costs O(visits removed x neighbours), whatever the number of ponds and the length of the routes (`state`); memory
-//! is O(n). `docs/explanation/search.md` says what was tried and what it gave.
+//! 1. `options`: what to search for, how long, and what a search found.
+//! 2. `objective`: what is minimised, and by what plans are compared.
+//! 3. `plain`: the engine for what is one number a route, the same both ways: all that is planned today.
+//!
+//! `docs/explanation/search.md` says what was tried and what it gave.
 
-mod airspace;
-mod anneal;
-mod assemble;
-mod balance;
-mod construct;
-mod context;
-mod cooperate;
-mod cycles;
-mod improve;
-mod lin_kernighan;
-mod moves;
-mod network;
 mod objective;
 mod options;
-mod order;
-mod population;
-mod recombine;
-mod recreate;
-mod rough;
-mod ruin;
-mod run;
-mod smooth;
-mod state;
-#[cfg(test)]
-mod testing;
+mod plain;
 
-pub(crate) use airspace::Airspace;
-pub(crate) use anneal::{Chain, Schedule};
-pub(crate) use construct::open_at_best_leg;
-pub(crate) use improve::improve_routes;
-pub(crate) use network::Network;
+use crate::problem::Problem;
 pub(crate) use objective::Objective;
 pub use options::{Goal, Options, Outcome};
-pub(crate) use order::{curve_keys, place_after_widest_gap, pseudo_angle};
-pub use run::solve;
-pub(crate) use run::to_indices;
-pub(crate) use state::State;
+pub(crate) use plain::{
+    Airspace, Chain, Network, Schedule, State, curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap,
+    pseudo_angle, to_indices,
+};
+
+/// Plans routes for `problem`, each of at least one visit, at most one per drone.
+///
+/// # Panics
+/// If [`Options::start`] names a visit that does not exist or misses one: check it with [`crate::evaluate::evaluate`].
+#[must_use]
+pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
+    plain::solve(problem, options)
+}

@@ -9,13 +9,13 @@ use super::cooperate::Meeting;
 use super::improve::improve_routes;
 use super::lin_kernighan::shorten;
 use super::network::Network;
-use super::objective::Rank;
-use super::options::{Goal, Options, Outcome};
 use super::population::Population;
 use super::rough::RoughPlan;
 use super::state::State;
 use crate::effort::{Budget, Effort};
 use crate::problem::Problem;
+use crate::search::objective::Rank;
+use crate::search::options::{Goal, Options, Outcome};
 
 /// Shares of the effort at which threads share their best plan while they work on the longest route.
 const MEETINGS: [f64; 2] = [0.5, 0.7];
@@ -29,11 +29,7 @@ const ALLOWANCES: [f64; 2] = [0.1, 0.02];
 /// more.
 const REFINE_STEPS_PER_VISIT: f64 = 4.0;
 const MAX_REFINE_SHARE: f64 = 0.2;
-/// Plans routes for `problem`, each of at least one visit, at most one per drone.
-///
-/// # Panics
-/// If [`Options::start`] names a visit that does not exist or misses one: check it with [`crate::evaluate::evaluate`].
-#[must_use]
+/// Plans routes for `problem`: see [`crate::search::solve`].
 pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);

@@ -10,7 +10,7 @@
 //! routes, so that a move may also exchange runs or tails between them (a giant tour with a copy of the depot per route does
 //! not keep the routes from being joined; a walk along the new routes does, and finds what each will cost). A move counts by
 //! the total and by a price for what it adds to routes above the mean one, because those that leave no route longer are few,
-//! and [`super::balance()`] evens out the routes for less than what the others gain.
+//! and [`super::balance`] evens out the routes for less than what the others gain.
 //!
 //! Nodes whose moves failed wait until a leg of theirs has changed (don't-look bits, Bentley, ORSA J. Computing 1992). Looking
 //! at a node costs O(1), a walk O(legs changed), and making a move O(visits of the routes it changes).
@@ -342,7 +342,7 @@ impl<'a> Routes<'a> {
 mod tests {
     use super::*;
     use crate::generate::{Variant, generate};
-    use crate::search::testing::{
+    use crate::search::plain::testing::{
         assert_costs_are_those_of_the_routes, assert_every_visit_once, farm_with_services, research_network, routes_of,
         unlimited,
     };

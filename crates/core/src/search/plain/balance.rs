@@ -427,7 +427,7 @@ impl<'a> Sets<'a> {
 mod tests {
     use super::*;
     use crate::geometry::Point;
-    use crate::search::testing::{
+    use crate::search::plain::testing::{
         assert_costs_are_those_of_the_routes, assert_every_visit_once, farm_with_services, research_network, routes_of,
         unlimited,
     };

@@ -7,9 +7,9 @@
 
 use super::airspace::Airspace;
 use super::network::{Network, leg_of_length};
-use super::objective::Objective;
 use super::state::{AFTER, BEFORE, Node, Place, State, Touched};
 use crate::random::Random;
+use crate::search::objective::Objective;
 
 /// One place in 2⁸ is passed over, so that a step can leave the greedy path.
 const PLACE_BLINK: u64 = 1 << (u64::BITS - 8);
@@ -272,8 +272,8 @@ impl Blinks {
 mod tests {
     use super::*;
     use crate::generate::{Variant, generate};
-    use crate::search::airspace::SharedAirspace;
-    use crate::search::testing::{research_network, routes_of};
+    use crate::search::plain::airspace::SharedAirspace;
+    use crate::search::plain::testing::{research_network, routes_of};
     use proptest::prelude::*;
 
     proptest! {

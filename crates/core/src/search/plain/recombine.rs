@@ -8,11 +8,11 @@
 
 use super::airspace::SharedAirspace;
 use super::network::Network;
-use super::objective::Objective;
 use super::order::pseudo_angle;
 use super::recreate::Recreate;
 use super::state::{ABSENT, State, Touched};
 use crate::random::Random;
+use crate::search::objective::Objective;
 
 /// Runs of routes tried for one child.
 const NUM_RUNS: usize = 8;
@@ -93,8 +93,8 @@ mod tests {
     use crate::generate::{Variant, generate};
     use crate::geometry::Point;
     use crate::problem::Problem;
-    use crate::search::run::to_nodes;
-    use crate::search::testing::{self, research_network};
+    use crate::search::plain::run::to_nodes;
+    use crate::search::plain::testing::{self, research_network};
     use crate::search::{Options, solve};
 
     #[test]

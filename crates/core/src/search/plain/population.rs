@@ -12,11 +12,11 @@ use super::balance::balance;
 use super::construct::Sectors;
 use super::context::{MAX_HEAT, Search};
 use super::improve::improve_routes;
-use super::objective::{Objective, RouteCosts};
 use super::recombine::cross;
 use super::state::State;
 use crate::effort::Effort;
 use crate::random::Random;
+use crate::search::objective::{Objective, RouteCosts};
 
 /// Share of the effort at which the race of the starts ends.
 const RACE_END: f64 = 0.25;

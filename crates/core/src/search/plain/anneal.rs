@@ -7,12 +7,12 @@
 
 use super::airspace::Airspace;
 use super::network::Network;
-use super::objective::{Objective, Rank};
 use super::recreate::Recreate;
 use super::ruin::Ruin;
 use super::state::{Difference, State, Touched};
 use crate::effort::Effort;
 use crate::random::Random;
+use crate::search::objective::{Objective, Rank};
 
 /// Share of the steps that start on the longest route.
 const LONGEST_SHARE: f64 = 0.5;

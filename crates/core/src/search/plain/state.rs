@@ -5,7 +5,7 @@
 //! copied when a change is taken back: one step of the search costs O(visits touched), whatever the length of the routes.
 
 use super::network::Network;
-use super::objective::RouteCosts;
+use crate::search::objective::RouteCosts;
 
 /// Route of a visit that no route makes at the moment.
 pub(crate) const ABSENT: u32 = u32::MAX;

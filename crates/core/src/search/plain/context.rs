@@ -4,10 +4,10 @@ use super::airspace::SharedAirspace;
 use super::anneal::Chain;
 use super::balance::balance;
 use super::network::Network;
-use super::objective::Objective;
-use super::options::{Goal, Options};
 use super::state::State;
 use crate::effort::Budget;
+use crate::search::objective::Objective;
+use crate::search::options::{Goal, Options};
 
 /// Temperatures relative to the longest route.
 pub(super) const MAX_HEAT: (f64, f64) = (1e-2, 1e-6);
