@@ -10,19 +10,34 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 CORE = ROOT / "crates" / "core" / "src"
-READING_ORDER = re.findall(r"^//! +\d+\. \[`(\w+)`\]", (CORE / "lib.rs").read_text(), flags=re.MULTILINE)
+
+
+def listed_modules(path: Path) -> list[str]:
+    """Names in the reading order at the top of a file."""
+    return re.findall(r"^//! +\d+\. \[?`(\w+)`", path.read_text(), flags=re.MULTILINE)
+
+
+def declared_modules(path: Path) -> list[str]:
+    """Names of the modules that a file declares, but for those of tests."""
+    source = re.sub(r"#\[cfg\(test\)\]\s*mod \w+;", "", path.read_text())
+    return re.findall(r"^(?:pub )?mod (\w+);", source, flags=re.MULTILINE)
+
+
+READING_ORDER = listed_modules(CORE / "lib.rs")
+SEARCH = CORE / "search"
+PLAIN = SEARCH / "plain"
 
 
 def sources_of(module: str) -> list[Path]:
     return [CORE / f"{module}.rs"] if (CORE / f"{module}.rs").exists() else sorted((CORE / module).rglob("*.rs"))
 
 
-def used_modules(source: str) -> set[str]:
-    """Names after `crate::` in the part of a file that is no test."""
+def used_modules(source: str, parent: str = "crate") -> set[str]:
+    """Names after `crate::`, or after the path of another parent, in the part of a file that is no test."""
     code, _, _ = source.partition("#[cfg(test)]")
     code = re.sub(r"//.*", "", code)
-    named = set(re.findall(r"\bcrate::(\w+)", code))
-    for group in re.findall(r"\bcrate::\{(.*?)\};", code, flags=re.DOTALL):
+    named = set(re.findall(rf"\b{parent}::(\w+)", code))
+    for group in re.findall(rf"\b{parent}::\{{(.*?)\}};", code, flags=re.DOTALL):
         while "{" in group:
             group = re.sub(r"\{[^{}]*\}", "", group)
         named.update(re.findall(r"(?:^|,)\s*(\w+)", group))
@@ -34,11 +49,34 @@ def test_the_parser_sees_every_form_of_use() -> None:
         "use crate::plan::Plan;\nuse crate::{error::{Fault, X}, travel};\nlet x = crate::problem::f(); // crate::hpp\n"
     )
     assert used_modules(source) == {"plan", "error", "travel", "problem"}
+    source = "use super::state::{A, State};\nuse super::{moves, order::{a, b}};\n// super::run\n#[cfg(test)] super::x"
+    assert used_modules(source, "super") == {"state", "moves", "order"}
 
 
 def test_every_core_module_has_a_place_in_the_reading_order() -> None:
-    declared = re.findall(r"^(?:pub )?mod (\w+);", (CORE / "lib.rs").read_text(), flags=re.MULTILINE)
-    assert sorted(READING_ORDER) == sorted(declared)
+    assert sorted(READING_ORDER) == sorted(declared_modules(CORE / "lib.rs"))
+
+
+@pytest.mark.parametrize("folder", [SEARCH, PLAIN], ids=lambda folder: folder.name)
+def test_every_module_of_the_search_has_a_place_in_the_reading_order(folder: Path) -> None:
+    assert sorted(listed_modules(folder / "mod.rs")) == sorted(declared_modules(folder / "mod.rs"))
+
+
+@pytest.mark.parametrize("module", listed_modules(PLAIN / "mod.rs"))
+def test_modules_of_the_plain_engine_use_only_those_before_them(module: str) -> None:
+    order = listed_modules(PLAIN / "mod.rs")
+    source = (PLAIN / f"{module}.rs").read_text()
+    upward = used_modules(source, "super") - set(order[: order.index(module)])
+    assert not upward, f"{module}.rs uses {sorted(upward)}, which come after it in search/plain/mod.rs"
+    shared = used_modules(source, "crate::search")
+    assert shared <= {"options", "objective"}, f"{module}.rs goes through the door of the search: {sorted(shared)}"
+
+
+@pytest.mark.parametrize("module", ["options", "objective"])
+def test_what_engines_share_knows_no_engine(module: str) -> None:
+    source = (SEARCH / f"{module}.rs").read_text()
+    order = listed_modules(SEARCH / "mod.rs")
+    assert used_modules(source, "super") | used_modules(source, "crate::search") <= set(order[: order.index(module)])
 
 
 @pytest.mark.parametrize("module", READING_ORDER)

@@ -4,28 +4,32 @@
 //!
 //! 1. [`error`]: what can be wrong with an input, all faults at once.
 //! 2. [`geometry`]: points and planar constructions, each citing its source.
-//! 3. [`neighbours`]: nearest neighbours of points.
-//! 4. [`random`]: seeded random numbers, the same on every machine.
-//! 5. [`generate`]: research farms, as the paper draws them.
-//! 6. [`problem`]: what is to be planned; validated once, then immutable.
-//! 7. [`travel`]: what a leg costs, and the local metric frame of a farm on the globe.
-//! 8. [`plan`]: the immutable result: routes, schedule, violations.
-//! 9. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
-//! 10. [`separation`]: how well a plan keeps the drones apart.
-//! 11. [`bound`]: lower bounds: what no plan can beat.
-//! 12. [`kmeans`]: clusters of nearby points.
-//! 13. [`sweep`]: back-and-forth coverage of a convex polygon.
-//! 14. [`hpp`]: the paper's planner.
-//! 15. [`search`]: the min-max optimiser.
-//! 16. [`territory`]: balanced routes in territories that do not overlap.
-//! 17. [`attention`]: the attention model, a trained network that builds routes.
+//! 3. [`frame`]: the local metric frame of a farm on the globe.
+//! 4. [`neighbours`]: nearest neighbours of points.
+//! 5. [`random`]: seeded random numbers, the same on every machine.
+//! 6. [`effort`]: how much of the effort is used: steps, time, or the wish to stop.
+//! 7. [`generate`]: research farms, as the paper draws them.
+//! 8. [`problem`]: what is to be planned; validated once, then immutable.
+//! 9. [`travel`]: what a leg costs.
+//! 10. [`plan`]: the immutable result: routes, schedule, violations.
+//! 11. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
+//! 12. [`separation`]: how well a plan keeps the drones apart.
+//! 13. [`bound`]: lower bounds: what no plan can beat.
+//! 14. [`kmeans`]: clusters of nearby points.
+//! 15. [`sweep`]: back-and-forth coverage of a convex polygon.
+//! 16. [`hpp`]: the paper's planner.
+//! 17. [`search`]: the min-max optimiser.
+//! 18. [`territory`]: balanced routes in territories that do not overlap.
+//! 19. [`attention`]: the attention model, a trained network that builds routes.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod attention;
 pub mod bound;
+pub mod effort;
 pub mod error;
 pub mod evaluate;
+pub mod frame;
 pub mod generate;
 pub mod geometry;
 pub mod hpp;

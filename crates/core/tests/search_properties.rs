@@ -1,12 +1,13 @@
 //! What every plan of the search must be, on any input.
 
 use pondhop_core::bound::lower_bound;
+use pondhop_core::effort::Progress;
 use pondhop_core::evaluate::evaluate;
 use pondhop_core::generate::{Variant, generate};
 use pondhop_core::geometry::Point;
 use pondhop_core::plan::Plan;
 use pondhop_core::problem::{Depot, Problem, VehicleType, Visit};
-use pondhop_core::search::{Goal, Options, Progress, solve};
+use pondhop_core::search::{Goal, Options, solve};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::Mutex;

@@ -7,6 +7,7 @@ mod attention;
 mod bound;
 mod error;
 mod evaluate;
+mod frame;
 mod generate;
 mod hpp;
 mod plan;
@@ -14,7 +15,6 @@ mod problem;
 mod search;
 mod separation;
 mod territory;
-mod travel;
 
 use pyo3::prelude::*;
 
@@ -27,6 +27,8 @@ mod _core {
     use crate::bound::{lower_bound, lower_bound_of_total};
     #[pymodule_export]
     use crate::evaluate::evaluate;
+    #[pymodule_export]
+    use crate::frame::LocalFrame;
     #[pymodule_export]
     use crate::generate::generate;
     #[pymodule_export]
@@ -41,8 +43,6 @@ mod _core {
     use crate::separation::{Separation, separation};
     #[pymodule_export]
     use crate::territory::territory;
-    #[pymodule_export]
-    use crate::travel::LocalFrame;
 
     use super::*;
 

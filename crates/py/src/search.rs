@@ -2,8 +2,9 @@
 
 use crate::error::to_python;
 use crate::problem::Problem;
+use pondhop_core::effort::Progress;
 use pondhop_core::plan::Violation;
-use pondhop_core::search::{Goal, Options, Progress, solve};
+use pondhop_core::search::{Goal, Options, solve};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;

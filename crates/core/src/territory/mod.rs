@@ -12,11 +12,11 @@
 mod cuts;
 mod hulls;
 
+use crate::effort::{Budget, Clock, Effort};
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::search::{
-    Budget, Chain, Clock, Effort, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg,
-    to_indices,
+    Chain, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg, to_indices,
 };
 use cuts::{Cut, Cutter, Draw};
 use hulls::Hulls;
@@ -57,7 +57,7 @@ pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<u
     let mut random = Random::new(seed);
     let tours = best_tours(network, &budget, &mut random);
     let state = State::new(network, &tours);
-    let objective = Objective::longest_route(network, &state);
+    let objective = Objective::longest_route(network.num_routes, state.costs());
     let mut chain = Chain::new(network, state, objective, seed, Hulls::new(network, &tours));
     let mut effort = Effort::new(&budget);
     anneal(network, &mut effort, &mut chain, MAX_END, MAX_HEAT);

@@ -1,8 +1,8 @@
 //! Farms and checks that the tests of several parts of the search need.
 
-use super::budget::Budget;
 use super::network::Network;
 use super::state::State;
+use crate::effort::Budget;
 use crate::generate::{Variant, generate};
 use crate::geometry::Point;
 use crate::problem::{Depot, Problem, VehicleType, Visit};

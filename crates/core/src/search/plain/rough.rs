@@ -10,10 +10,10 @@
 //!
 //! O(n log n) for n visits; after the sorting everything is O(n).
 
-use super::budget::Budget;
-use super::construct::{ends_by_cost, pseudo_angle};
 use super::network::Network;
-use super::smooth::{Path, Places, Rows};
+use super::order::{ends_by_cost, pseudo_angle};
+use super::smooth::{Coordinates, Path, Rows};
+use crate::effort::Budget;
 use crate::geometry::{Point, cross, dot};
 
 /// Visits that the pitch and the direction of the grid are taken from.
@@ -45,7 +45,7 @@ const MAX_PIECE: usize = 3;
 /// Routes in the making, one for each sector around the depot.
 pub(super) struct RoughPlan<'a> {
     network: &'a Network,
-    places: Places,
+    places: Coordinates,
     /// Sorted by angle around the depot; the first follows the widest gap.
     visits: Vec<u32>,
     /// Ends of the sectors in `visits`, beginning with 0.
@@ -190,7 +190,7 @@ fn key(step: u32, visit: u32) -> u64 {
 ///
 /// The pitch is the median distance from a sampled visit to the nearest in another place, the rows point from that visit to
 /// its neighbour. Visits without a grid have rows as well, to no harm.
-fn places_on_grid(network: &Network) -> (Places, f32) {
+fn places_on_grid(network: &Network) -> (Coordinates, f32) {
     let visits = &network.points[..network.num_visits];
     let num_samples = visits.len().min(NUM_SAMPLES);
     let sample = |index: usize| visits[index * visits.len() / num_samples];
@@ -211,7 +211,7 @@ fn places_on_grid(network: &Network) -> (Places, f32) {
     let (xs, ys) = network.points[..=network.num_visits].iter().map(place).unzip();
     let spread = squares[3 * num_samples / 4].0 / squares[num_samples / 4].0;
     let rows_per_strip = if spread < MIN_SPREAD_WITHOUT_GRID { ROWS_PER_STRIP } else { ROWS_WITHOUT_GRID };
-    (Places { xs, ys }, rows_per_strip)
+    (Coordinates { xs, ys }, rows_per_strip)
 }
 
 /// Squared distance from a place to the nearest point in another place; infinite if there is none.

@@ -10,15 +10,15 @@
 //! routes, so that a move may also exchange runs or tails between them (a giant tour with a copy of the depot per route does
 //! not keep the routes from being joined; a walk along the new routes does, and finds what each will cost). A move counts by
 //! the total and by a price for what it adds to routes above the mean one, because those that leave no route longer are few,
-//! and [`super::balance()`] evens out the routes for less than what the others gain.
+//! and [`super::balance`] evens out the routes for less than what the others gain.
 //!
 //! Nodes whose moves failed wait until a leg of theirs has changed (don't-look bits, Bentley, ORSA J. Computing 1992). Looking
 //! at a node costs O(1), a walk O(legs changed), and making a move O(visits of the routes it changes).
 
-use super::budget::Budget;
-use super::moves::{Cut, MAX_CUTS, Move};
+use super::moves::{CutLeg, MAX_CUTS, Move};
 use super::network::{Network, leg_of_length};
 use super::state::{AFTER, BEFORE, State};
+use crate::effort::Budget;
 use crate::geometry::Point;
 
 /// Ways to go on that are tried after each cut but the last; after the last but one, a move is only closed.
@@ -188,7 +188,7 @@ impl<'a> Routes<'a> {
 
     /// The leg of `node` back or forth, reached along the leg `added`.
     #[inline]
-    fn cut(&self, node: u32, is_forth: bool, added: f64) -> Cut {
+    fn cut(&self, node: u32, is_forth: bool, added: f64) -> CutLeg {
         let place = &self.places[node as usize];
         let to = place.links[usize::from(is_forth)];
         let (position, head, leg) = if is_forth {
@@ -197,7 +197,7 @@ impl<'a> Routes<'a> {
             let before = &self.places[to as usize];
             (before.position, before.cost, before.legs[AFTER])
         };
-        Cut { route: place.route, position, from: node, to, is_forth, head, head_and_leg: head + leg, added }
+        CutLeg { route: place.route, position, from: node, to, is_forth, head, head_and_leg: head + leg, added }
     }
 
     /// Looks for a move that gains among those that begin with the cuts of `change`, which save `gain` more than the legs
@@ -342,7 +342,7 @@ impl<'a> Routes<'a> {
 mod tests {
     use super::*;
     use crate::generate::{Variant, generate};
-    use crate::search::testing::{
+    use crate::search::plain::testing::{
         assert_costs_are_those_of_the_routes, assert_every_visit_once, farm_with_services, research_network, routes_of,
         unlimited,
     };

@@ -4,7 +4,7 @@
 //! from it gives another route too much; two or three small ones, far from each other, may fit.
 //!
 //! Method: the elementary moves are CROSS exchanges (Taillard, Badeau, Gendreau, Guertin and Potvin, Transportation Science
-//! 1997): one or two visits in a row of one route change places with up to two of another, each run either way
+//! 1997): one or two visits in a row of one route change places with up to two of another, each stretch either way
 //! round, near each other by neighbour lists. Those that do not touch the same leg are independent: their changes of the
 //! routes add up. A depth-first search looks for the few that together leave the longest route shortest: it always relieves
 //! the route that is longest at the moment, as an ejection chain does (Glover, Discrete Applied Mathematics 1996), by the
@@ -15,15 +15,14 @@
 //! Smoothing costs O(n) for its buffers and about O(visits), one set O(n) for its buffers, O(visits of the routes relieved or changed x neighbours), and a
 //! bounded number of sets tried.
 
-use super::budget::Budget;
-use super::construct::improve_route;
-use super::improve::Room;
+use super::improve::{Room, improve_route};
 use super::network::Network;
 use super::state::{AFTER, BEFORE, State, Touched};
+use crate::effort::Budget;
 
-/// Visits in a run, at most.
-const MAX_RUN: usize = 2;
-/// Neighbours tried per end of a run.
+/// Visits in a stretch, at most.
+const MAX_STRETCH: usize = 2;
+/// Neighbours tried per end of a stretch.
 const NUM_TRIED: usize = 5;
 /// Exchanges in a set, at most.
 const MAX_SET: usize = 3;
@@ -38,7 +37,7 @@ const MIN_GAIN: f64 = 1e-9;
 
 /// Visits of a route that follow each other.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+struct Stretch {
     /// The node before the first.
     before: u32,
     size: u32,
@@ -46,11 +45,11 @@ struct Run {
     is_turned: bool,
 }
 
-/// Two runs that change places, of which `taken` may be empty.
+/// Two stretches that change places, of which `taken` may be empty.
 #[derive(Clone, Copy, Debug)]
 struct Exchange {
-    given: Run,
-    taken: Run,
+    given: Stretch,
+    taken: Stretch,
     taker: u32,
     /// What it adds to the cost of the giver, which is less than nothing.
     giver_change: f64,
@@ -73,7 +72,7 @@ pub(super) fn balance(network: &Network, budget: &Budget<'_>, state: &mut State)
         if budget.is_time_over() {
             break;
         }
-        has_changed |= smooth(network, budget, state, route, |_| true, &mut room);
+        has_changed |= improve_one(network, budget, state, route, |_| true, &mut room);
     }
     for _ in 0..MAX_ROUNDS {
         let Some(set) = Sets::new(network, state).best(budget) else { break };
@@ -84,7 +83,7 @@ pub(super) fn balance(network: &Network, budget: &Budget<'_>, state: &mut State)
         touched.routes.sort_unstable();
         touched.routes.dedup();
         for &route in &touched.routes {
-            smooth(network, budget, state, route as usize, |visit| touched.nodes.contains(&visit), &mut room);
+            improve_one(network, budget, state, route as usize, |visit| touched.nodes.contains(&visit), &mut room);
         }
         has_changed = true;
     }
@@ -92,7 +91,7 @@ pub(super) fn balance(network: &Network, budget: &Budget<'_>, state: &mut State)
 }
 
 /// Improves one route, from those visits that `is_new` says have new neighbours. Returns whether it did anything.
-fn smooth(
+fn improve_one(
     network: &Network,
     budget: &Budget<'_>,
     state: &mut State,
@@ -110,13 +109,13 @@ fn smooth(
 }
 
 fn apply(network: &Network, state: &mut State, exchange: &Exchange, touched: &mut Touched) {
-    let [given, taken] = [exchange.given, exchange.taken].map(|run| {
-        let mut visits = Vec::with_capacity(MAX_RUN);
-        let first = state.nodes[run.before as usize].next;
-        if run.size > 0 {
-            state.remove_string(network, first, run.size as usize, &mut visits, touched);
+    let [given, taken] = [exchange.given, exchange.taken].map(|stretch| {
+        let mut visits = Vec::with_capacity(MAX_STRETCH);
+        let first = state.nodes[stretch.before as usize].next;
+        if stretch.size > 0 {
+            state.remove_string(network, first, stretch.size as usize, &mut visits, touched);
         }
-        if run.is_turned {
+        if stretch.is_turned {
             visits.reverse();
         }
         visits
@@ -126,8 +125,8 @@ fn apply(network: &Network, state: &mut State, exchange: &Exchange, touched: &mu
     }
 }
 
-/// The run a route gives.
-struct GivenRun {
+/// The stretch a route gives.
+struct GivenStretch {
     before: u32,
     size: u32,
     first: u32,
@@ -141,18 +140,18 @@ struct GivenRun {
     closing: f64,
 }
 
-/// One end of a run given, and the leg to what it is put beside.
+/// One end of a stretch given, and the leg to what it is put beside.
 struct GivenEnd<'a> {
-    given: &'a GivenRun,
+    given: &'a GivenStretch,
     is_first: bool,
     leg: f64,
 }
 
-/// The run a route takes out beside one of its nodes, to make room; none, if its size is 0.
+/// The stretch a route takes out beside one of its nodes, to make room; none, if its size is 0.
 #[derive(Clone, Copy, Debug)]
-struct TakenRun {
+struct TakenStretch {
     near: u32,
-    /// Whether the run lies after `near`.
+    /// Whether the stretch lies after `near`.
     is_after: bool,
     size: u32,
     /// Beside `near`.
@@ -270,9 +269,9 @@ impl<'a> Sets<'a> {
     }
 
     fn touches_set(&self, exchange: &Exchange) -> bool {
-        [exchange.given, exchange.taken].iter().any(|run| {
-            let mut node = run.before;
-            (0..=run.size).any(|_| {
+        [exchange.given, exchange.taken].iter().any(|stretch| {
+            let mut node = stretch.before;
+            (0..=stretch.size).any(|_| {
                 let is_touched = self.is_touched[node as usize];
                 node = self.state.nodes[node as usize].next;
                 is_touched
@@ -281,9 +280,9 @@ impl<'a> Sets<'a> {
     }
 
     fn mark(&mut self, exchange: &Exchange, is_touched: bool) {
-        for run in [exchange.given, exchange.taken] {
-            let mut node = run.before;
-            for _ in 0..=run.size {
+        for stretch in [exchange.given, exchange.taken] {
+            let mut node = stretch.before;
+            for _ in 0..=stretch.size {
                 self.is_touched[node as usize] = is_touched;
                 node = self.state.nodes[node as usize].next;
             }
@@ -297,20 +296,21 @@ impl<'a> Sets<'a> {
         let room = self.goal() * self.costs.len() as f64 - self.state.total;
         let mean_leg = self.state.total / self.network.points.len() as f64;
         let max_change = room.min(MAX_CHANGE * mean_leg);
-        let runs = self.given_runs(giver);
+        let stretches = self.given_stretches(giver);
         let mut found = Vec::new();
-        for (place, run) in runs[0].iter().enumerate() {
-            for neighbour in self.network.neighbours(run.first).iter().take(NUM_TRIED) {
+        for (place, stretch) in stretches[0].iter().enumerate() {
+            for neighbour in self.network.neighbours(stretch.first).iter().take(NUM_TRIED) {
                 if self.state.nodes[neighbour.node as usize].route == giver {
                     continue;
                 }
                 for is_after in [true, false] {
-                    let taken = self.taken_runs(neighbour.node, is_after);
-                    for (size, runs) in (1..).zip(&runs) {
-                        let beginning = runs.get(place).map(|run| (run, true));
+                    let taken = self.taken_stretches(neighbour.node, is_after);
+                    for (size, stretches) in (1..).zip(&stretches) {
+                        let beginning = stretches.get(place).map(|stretch| (stretch, true));
                         // Of one visit, both ends are the same.
                         let ending = if size > 1 { place.checked_sub(size - 1) } else { None };
-                        for (given, is_first) in beginning.into_iter().chain(ending.map(|first| (&runs[first], false)))
+                        for (given, is_first) in
+                            beginning.into_iter().chain(ending.map(|first| (&stretches[first], false)))
                         {
                             let end = GivenEnd { given, is_first, leg: neighbour.leg };
                             found.extend(
@@ -325,19 +325,20 @@ impl<'a> Sets<'a> {
         found
     }
 
-    /// The runs that `giver` can give: by size, then in flying order.
-    fn given_runs(&self, giver: u32) -> [Vec<GivenRun>; MAX_RUN] {
+    /// The stretches that `giver` can give: by size, then in flying order.
+    fn given_stretches(&self, giver: u32) -> [Vec<GivenStretch>; MAX_STRETCH] {
         let (network, nodes) = (self.network, &self.state.nodes);
-        let mut runs = std::array::from_fn(|_| Vec::with_capacity(self.state.route_sizes[giver as usize] as usize));
+        let mut stretches =
+            std::array::from_fn(|_| Vec::with_capacity(self.state.route_sizes[giver as usize] as usize));
         let mut before = network.num_visits as u32 + giver;
         while (nodes[before as usize].next as usize) < network.num_visits {
             let first = nodes[before as usize].next;
             let (mut last, mut inner) = (first, network.services[first as usize]);
-            for (size, runs) in (1..).zip(&mut runs) {
+            for (size, stretches) in (1..).zip(&mut stretches) {
                 let after = nodes[last as usize].next;
                 let freed = nodes[before as usize].legs[AFTER] + inner + nodes[last as usize].legs[AFTER];
                 let closing = network.leg(before, after);
-                runs.push(GivenRun { before, size, first, last, after, inner, freed, closing });
+                stretches.push(GivenStretch { before, size, first, last, after, inner, freed, closing });
                 if after as usize >= network.num_visits {
                     break;
                 }
@@ -346,27 +347,27 @@ impl<'a> Sets<'a> {
             }
             before = first;
         }
-        runs
+        stretches
     }
 
-    /// The runs that the route of `near` can give on one side of it, the shortest first.
-    fn taken_runs(&self, near: u32, is_after: bool) -> [Option<TakenRun>; MAX_RUN + 1] {
+    /// The stretches that the route of `near` can give on one side of it, the shortest first.
+    fn taken_stretches(&self, near: u32, is_after: bool) -> [Option<TakenStretch>; MAX_STRETCH + 1] {
         let nodes = &self.state.nodes;
         let (side, other_side) = if is_after { (AFTER, BEFORE) } else { (BEFORE, AFTER) };
         let step = |node: u32| {
             let node = &nodes[node as usize];
             if is_after { node.next } else { node.previous }
         };
-        let mut runs = [None; MAX_RUN + 1];
+        let mut stretches = [None; MAX_STRETCH + 1];
         let first = step(near);
         let (mut last, mut far, mut freed) = (near, first, nodes[near as usize].legs[side]);
-        for (size, run) in (0..).zip(&mut runs) {
+        for (size, stretch) in (0..).zip(&mut stretches) {
             let (mut inner, mut least_legs) = (0.0, 0.0);
             if size > 0 {
                 inner = freed - nodes[first as usize].legs[other_side] - nodes[last as usize].legs[side];
                 least_legs = self.least_leg(first) + self.least_leg(last);
             }
-            *run = Some(TakenRun { near, is_after, size, first, last, far, inner, freed, least_legs });
+            *stretch = Some(TakenStretch { near, is_after, size, first, last, far, inner, freed, least_legs });
             if far as usize >= self.network.num_visits {
                 break;
             }
@@ -374,15 +375,15 @@ impl<'a> Sets<'a> {
             far = step(last);
             freed += self.network.services[last as usize] + nodes[last as usize].legs[side];
         }
-        runs
+        stretches
     }
 
-    /// The exchange that puts an end of a run beside the node next to which the taken one lies; `None` if that does not shorten
+    /// The exchange that puts an end of a stretch beside the node next to which the taken one lies; `None` if that does not shorten
     /// the giver, adds more than `max_change` to the total, or is found from the other end as well.
-    fn exchange(&self, end: &GivenEnd<'_>, taken: &TakenRun, max_change: f64) -> Option<Exchange> {
+    fn exchange(&self, end: &GivenEnd<'_>, taken: &TakenStretch, max_change: f64) -> Option<Exchange> {
         let (network, given) = (self.network, end.given);
         let far_end = if end.is_first { given.last } else { given.first };
-        // What the giver has instead, but for the legs to and from a taken run.
+        // What the giver has instead, but for the legs to and from a taken stretch.
         let inner = if taken.size > 0 { taken.inner } else { given.closing };
         let mut giver_change = inner - given.freed;
         let least_change = giver_change + taken.least_legs;
@@ -403,8 +404,8 @@ impl<'a> Sets<'a> {
         }
         let before = if taken.is_after { taken.near } else { taken.far };
         (giver_change < 0.0 && giver_change + taker_change < max_change).then_some(Exchange {
-            given: Run { before: given.before, size: given.size, is_turned: end.is_first != taken.is_after },
-            taken: Run { before, size: taken.size, is_turned },
+            given: Stretch { before: given.before, size: given.size, is_turned: end.is_first != taken.is_after },
+            taken: Stretch { before, size: taken.size, is_turned },
             taker: self.state.nodes[taken.near as usize].route,
             giver_change,
             taker_change,
@@ -426,7 +427,7 @@ impl<'a> Sets<'a> {
 mod tests {
     use super::*;
     use crate::geometry::Point;
-    use crate::search::testing::{
+    use crate::search::plain::testing::{
         assert_costs_are_those_of_the_routes, assert_every_visit_once, farm_with_services, research_network, routes_of,
         unlimited,
     };
@@ -493,7 +494,8 @@ mod tests {
 
     /// What tells an exchange from others.
     fn place(exchange: &Exchange) -> [(u32, u32, bool); 2] {
-        [exchange.given, exchange.taken].map(|run| (run.before, run.size, run.is_turned && run.size > 1))
+        [exchange.given, exchange.taken]
+            .map(|stretch| (stretch.before, stretch.size, stretch.is_turned && stretch.size > 1))
     }
 
     proptest! {

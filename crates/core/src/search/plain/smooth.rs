@@ -21,14 +21,14 @@ const MIN_GAIN: f64 = 1e-9;
 const MIN_ROUGH_GAIN: f32 = 1e-5;
 
 /// Coordinates of all visits, then of the depot, in single precision.
-pub(super) struct Places {
+pub(super) struct Coordinates {
     /// First coordinates.
     pub xs: Vec<f32>,
     /// Second coordinates.
     pub ys: Vec<f32>,
 }
 
-impl Places {
+impl Coordinates {
     /// Length of a tour of visits from the depot and back.
     pub fn tour_length(&self, tour: &[u32]) -> f32 {
         let depot = self.xs.len() - 1;
@@ -63,7 +63,7 @@ pub(super) struct Path {
 
 impl Path {
     /// The path along `route`.
-    pub fn new(places: &Places, route: &[u32]) -> Self {
+    pub fn new(places: &Coordinates, route: &[u32]) -> Self {
         let depot = places.xs.len() - 1;
         let mut nodes = Vec::with_capacity(route.len() + 2);
         nodes.push(depot as u32);
@@ -231,7 +231,7 @@ impl Path {
     }
 
     /// Puts a visit where it lengthens the path least.
-    pub fn insert(&mut self, places: &Places, visit: u32, rows: &mut Rows) {
+    pub fn insert(&mut self, places: &Coordinates, visit: u32, rows: &mut Rows) {
         let num_legs = self.nodes.len() - 1;
         rows.make_room(self.nodes.len() + 1);
         let (x, y) = (places.xs[visit as usize], places.ys[visit as usize]);
@@ -320,11 +320,11 @@ mod tests {
     use crate::problem::Problem;
     use proptest::prelude::*;
 
-    fn network(points: &[(f64, f64)]) -> (Network, Places) {
+    fn network(points: &[(f64, f64)]) -> (Network, Coordinates) {
         let ponds: Vec<Point> = points.iter().map(|&(x, y)| Point::new(x, y)).collect();
         let network = Network::new(&Problem::research(Point::new(0.0, 0.0), &ponds, 1).unwrap());
         let places = network.points.iter().map(|point| (point.x as f32, point.y as f32)).unzip();
-        (network, Places { xs: places.0, ys: places.1 })
+        (network, Coordinates { xs: places.0, ys: places.1 })
     }
 
     fn sorted(mut visits: Vec<u32>) -> Vec<u32> {

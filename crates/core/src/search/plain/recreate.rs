@@ -7,9 +7,9 @@
 
 use super::airspace::Airspace;
 use super::network::{Network, leg_of_length};
-use super::state::{AFTER, BEFORE, Node, Place, RouteCosts, State, Touched};
+use super::state::{AFTER, BEFORE, Node, Place, State, Touched};
 use crate::random::Random;
-use std::cmp::Ordering;
+use crate::search::objective::Objective;
 
 /// One place in 2⁸ is passed over, so that a step can leave the greedy path.
 const PLACE_BLINK: u64 = 1 << (u64::BITS - 8);
@@ -22,97 +22,6 @@ const MAX_DEPOT_ENDS: u32 = 16;
 /// price makes plans that are well balanced, though longer in total, which the low one alone passes by; the low one leads to
 /// short plans, which are better where routes have many visits.
 const OVERFLOW_PRICES: [f64; 2] = [1000.0, 10.0];
-
-/// What a plan costs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Objective {
-    /// Weight of the longest route.
-    pub max_weight: f64,
-    /// Weight of the total.
-    pub total_weight: f64,
-    /// No route may become longer.
-    pub cap: f64,
-    /// Routes should not become longer.
-    pub target: f64,
-}
-
-/// Weight of the mean route beside the longest: without it, shortening any other route would not count.
-const MEAN_WEIGHT: f64 = 0.02;
-
-impl Objective {
-    /// The longest route, and a little the mean one, from `state` on.
-    pub fn longest_route(network: &Network, state: &State) -> Self {
-        let total_weight = MEAN_WEIGHT / network.num_routes as f64;
-        Self { max_weight: 1.0, total_weight, cap: f64::INFINITY, target: state.max_route_cost() }
-    }
-
-    /// Only the total, while no route may become longer than `cap`.
-    pub fn total_within(cap: f64) -> Self {
-        Self { max_weight: 0.0, total_weight: 1.0, cap, target: cap }
-    }
-
-    /// The same, now that `state` is known: no route should become longer than its longest one, if that counts at all.
-    pub fn aimed_at(self, state: &State) -> Self {
-        let target = if self.max_weight > 0.0 { self.target.min(state.max_route_cost()) } else { self.target };
-        Self { target, ..self }
-    }
-
-    /// What `state` costs.
-    pub fn value(&self, state: &State) -> f64 {
-        self.value_of(RouteCosts { longest: state.max_route_cost(), total: state.total })
-    }
-
-    /// What a plan with routes of these costs costs.
-    pub fn value_of(&self, costs: RouteCosts) -> f64 {
-        self.max_weight * costs.longest + self.total_weight * costs.total
-    }
-
-    /// By what two plans are compared in the end: the longest route first, if it counts, then the total. The value, which
-    /// guides the search, would take a longer route for a shorter total.
-    pub fn rank(&self, state: &State) -> Rank {
-        Rank { longest: if self.max_weight > 0.0 { state.max_route_cost() } else { 0.0 }, total: state.total }
-    }
-}
-
-/// By how much sums of the same legs differ at most, after many changes.
-const ROUNDING: f64 = 1e-8;
-
-fn is_about(one: f64, other: f64) -> bool {
-    (one - other).abs() <= ROUNDING * other
-}
-
-/// How good a plan is: less is better, the fields in falling order of importance.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rank {
-    longest: f64,
-    total: f64,
-}
-
-impl Rank {
-    pub fn new(longest: f64, total: f64) -> Self {
-        Self { longest, total }
-    }
-
-    /// Orders two ranks, the better one first.
-    pub fn compare(&self, other: &Self) -> Ordering {
-        self.longest.total_cmp(&other.longest).then(self.total.total_cmp(&other.total))
-    }
-
-    /// Whether this is equal to `other` but for rounding.
-    pub fn is_about(&self, other: &Self) -> bool {
-        is_about(self.longest, other.longest) && is_about(self.total, other.total)
-    }
-
-    /// Whether this is better than `other`, and not only by rounding.
-    pub fn is_clearly_better(&self, other: &Self) -> bool {
-        if is_about(self.longest, other.longest) { self.total < other.total } else { self.longest < other.longest }
-    }
-
-    /// Whether this is better than `other`.
-    pub fn is_better(&self, other: &Self) -> bool {
-        self.compare(other) == Ordering::Less
-    }
-}
 
 /// Buffers of the insertion.
 #[derive(Debug)]
@@ -363,36 +272,9 @@ impl Blinks {
 mod tests {
     use super::*;
     use crate::generate::{Variant, generate};
-    use crate::geometry::Point;
-    use crate::problem::Problem;
-    use crate::search::airspace::SharedAirspace;
-    use crate::search::testing::{research_network, routes_of};
+    use crate::search::plain::airspace::SharedAirspace;
+    use crate::search::plain::testing::{research_network, routes_of};
     use proptest::prelude::*;
-
-    /// A limit that may be used up must not be pulled down by the plans on the way.
-    #[test]
-    fn a_better_plan_lowers_the_target_only_if_the_longest_route_counts() {
-        let ponds = [3.0, -1.0].map(|x| Point::new(x, 0.0));
-        let network = Network::new(&Problem::research(Point::new(0.0, 0.0), &ponds, 2).unwrap());
-        let (together, apart) = (State::new(&network, &[vec![0, 1]]), State::new(&network, &[vec![0], vec![1]]));
-        let longest = Objective::longest_route(&network, &together);
-        assert!((longest.target - 8.0).abs() < 1e-12);
-        assert!((longest.aimed_at(&apart).target - 6.0).abs() < 1e-12);
-        assert!((longest.aimed_at(&apart).aimed_at(&together).target - 6.0).abs() < 1e-12);
-        assert!((Objective::total_within(9.0).aimed_at(&apart).target - 9.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn equal_longest_routes_are_judged_by_the_total() {
-        let (base, rounded) = (Rank::new(2.0, 9.0), Rank::new(2.0 * (1.0 - 1e-12), 9.5));
-        assert!(rounded.is_better(&base) && !rounded.is_clearly_better(&base) && base.is_clearly_better(&rounded));
-        assert!(Rank::new(1.9, 9.5).is_clearly_better(&base) && !base.is_clearly_better(&Rank::new(1.9, 9.5)));
-        assert!(!base.is_clearly_better(&base));
-        // Where up to 2.5 the longest route does not matter, a plan beyond is worse, whatever its total.
-        let within = |longest: f64, total| Rank::new(longest.max(2.5), total);
-        assert!(within(2.4, 9.0).is_clearly_better(&within(2.0, 9.5)));
-        assert!(within(2.4, 9.0).is_clearly_better(&within(2.6, 8.0)));
-    }
 
     proptest! {
         /// Leaving out the ends of the routes changes nothing, and the bound holds while visits come in.
@@ -406,7 +288,7 @@ mod tests {
             let network = research_network(farm.depot, &farm.ponds, num_routes);
             let routes = routes_of(&homes[..num_ponds], network.num_routes);
             let (mut state, mut touched) = (State::new(&network, &routes), Touched::default());
-            let objective = Objective::longest_route(&network, &state);
+            let objective = Objective::longest_route(network.num_routes, state.costs());
             let removed: Vec<u32> = (0..num_removed.min(num_ponds) as u32).collect();
             for &visit in &removed {
                 state.remove_string(&network, visit, 1, &mut Vec::new(), &mut touched);

@@ -7,11 +7,12 @@
 //! (HGA). Changed: the routes taken lie side by side, so that only the seam between the parents has to be mended. O(n).
 
 use super::airspace::SharedAirspace;
-use super::construct::pseudo_angle;
 use super::network::Network;
-use super::recreate::{Objective, Recreate};
+use super::order::pseudo_angle;
+use super::recreate::Recreate;
 use super::state::{ABSENT, State, Touched};
 use crate::random::Random;
+use crate::search::objective::Objective;
 
 /// Runs of routes tried for one child.
 const NUM_RUNS: usize = 8;
@@ -72,7 +73,7 @@ fn inherit(network: &Network, keeper: &State, giver: &State, is_taken: &[bool], 
     let missing: Vec<u32> =
         (0..network.num_visits as u32).filter(|&visit| child.nodes[visit as usize].route == ABSENT).collect();
     let target = keeper.max_route_cost().min(giver.max_route_cost());
-    let objective = Objective { target, ..Objective::longest_route(network, keeper) };
+    let objective = Objective { target, ..Objective::longest_route(network.num_routes, keeper.costs()) };
     let is_complete = Recreate::new(network).insert(
         network,
         &mut child,
@@ -92,8 +93,9 @@ mod tests {
     use crate::generate::{Variant, generate};
     use crate::geometry::Point;
     use crate::problem::Problem;
-    use crate::search::testing::{self, research_network};
-    use crate::search::{Options, solve, to_nodes};
+    use crate::search::plain::run::to_nodes;
+    use crate::search::plain::testing::{self, research_network};
+    use crate::search::{Options, solve};
 
     #[test]
     fn a_giver_with_one_route_makes_a_twin_of_the_keeper() {

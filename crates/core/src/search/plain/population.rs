@@ -9,13 +9,14 @@ use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
 use super::assemble::assemble;
 use super::balance::balance;
-use super::budget::Effort;
-use super::construct::Sweep;
+use super::construct::Sectors;
+use super::context::{MAX_HEAT, Search};
+use super::improve::improve_routes;
 use super::recombine::cross;
-use super::recreate::Objective;
-use super::state::{RouteCosts, State};
-use super::{MAX_HEAT, Search, improve_routes};
+use super::state::State;
+use crate::effort::Effort;
 use crate::random::Random;
+use crate::search::objective::{Objective, RouteCosts};
 
 /// Share of the effort at which the race of the starts ends.
 const RACE_END: f64 = 0.25;
@@ -63,10 +64,10 @@ impl Population {
     /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until those are left that
     /// can have enough children: one, if there is no effort for children.
     pub fn race(search: &Search<'_>, effort: &mut Effort<'_>, thread: usize) -> Self {
-        let sweep = Sweep::new(search.network);
+        let sectors = Sectors::new(search.network);
         let start = |index: usize| {
             let stream = (index * search.options.num_threads + thread) as u64;
-            let mut routes = sweep.sectors(&shares(search, stream));
+            let mut routes = sectors.routes(&shares(search, stream));
             improve_routes(search.network, search.budget, &mut routes);
             search.chain_from(&routes, stream)
         };
@@ -160,7 +161,7 @@ impl Population {
         let keeper = self.random.below(self.chains.len());
         let giver = (keeper + 1 + self.random.below(self.chains.len() - 1)) % self.chains.len();
         let state = cross(search.network, &self.chains[keeper].best, &self.chains[giver].best, &mut self.random);
-        let objective = Objective::longest_route(search.network, &state);
+        let objective = Objective::longest_route(search.network.num_routes, state.costs());
         Chain::new(search.network, state, objective, self.random.bits(), SharedAirspace)
     }
 
@@ -183,12 +184,12 @@ impl Population {
         let mut is_balanced = false;
         if let Some(mut shorter) = self.assemble_all(search, &child.best, objective.target, crowding) {
             balance(search.network, search.budget, &mut shorter);
-            if objective.value(&shorter) < objective.value(&child.best) {
+            if objective.value(shorter.costs()) < objective.value(child.best.costs()) {
                 child.adopt(&shorter);
                 is_balanced = true;
             }
         }
-        let value = |costs: &[f64]| objective.value_of(RouteCosts::of(costs));
+        let value = |costs: &[f64]| objective.value(RouteCosts::of(costs));
         if let Some(better) = self.assemble_all(search, &child.best, objective.target, value) {
             child.adopt(&better);
             is_balanced = false;

@@ -51,41 +51,41 @@ pub(super) fn alternating_cycles(base: &[[Link; 2]], donor: &[[Link; 2]], random
     let num_visits = base.len();
     let mut odd_links = [OddLinks::new(base, donor), OddLinks::new(donor, base)];
     let mut cycles = Vec::new();
-    let mut path = Path { legs: Vec::new(), places: vec![[None; 2]; num_visits + 1] };
+    let mut walk = Walk { legs: Vec::new(), places: vec![[None; 2]; num_visits + 1] };
     let first = random.below(num_visits);
     for start in (first..num_visits).chain(0..first) {
         while odd_links[0].has_any(start) {
             let mut at = start as u32;
-            path.places[start][0] = Some(0);
+            walk.places[start][0] = Some(0);
             loop {
-                let side = path.legs.len() % 2;
+                let side = walk.legs.len() % 2;
                 let Some(Link { leg, to }) = odd_links[side].draw(at, random) else {
-                    path.give_up();
+                    walk.give_up();
                     break;
                 };
-                path.legs.push(OddLeg { ends: [at, to], leg, is_of_base: side == 0 });
+                walk.legs.push(OddLeg { ends: [at, to], leg, is_of_base: side == 0 });
                 at = to;
-                if let Some(cycle) = path.cut_loop(at) {
+                if let Some(cycle) = walk.cut_loop(at) {
                     cycles.push(cycle);
-                    if path.legs.is_empty() {
+                    if walk.legs.is_empty() {
                         break;
                     }
                 }
             }
-            path.places[start][0] = None;
+            walk.places[start][0] = None;
         }
     }
     cycles
 }
 
 /// Legs walked, those of the base and of the donor in turn.
-struct Path {
+struct Walk {
     legs: Vec<OddLeg>,
-    /// How many legs had been walked at each node, the depot last, by parity: `None` if the path does not go through it.
+    /// How many legs had been walked at each node, the depot last, by parity: `None` if the walk does not go through it.
     places: Vec<[Option<usize>; 2]>,
 }
 
-impl Path {
+impl Walk {
     /// Leaves out the legs walked: nothing leads on from the depot.
     fn give_up(&mut self) {
         for node in self.legs.drain(..).flat_map(|odd_leg| odd_leg.ends) {
@@ -93,7 +93,7 @@ impl Path {
         }
     }
 
-    /// The even loop that was closed by coming to `node`, which is then no longer part of the path.
+    /// The even loop that was closed by coming to `node`, which is then no longer part of the walk.
     fn cut_loop(&mut self, node: u32) -> Option<Vec<OddLeg>> {
         let place = &mut self.places[node as usize][self.legs.len() % 2];
         let Some(begin) = *place else {

@@ -6,12 +6,13 @@
 //! copying what it touched, so that its cost does not depend on the size of the plan.
 
 use super::airspace::Airspace;
-use super::budget::Effort;
 use super::network::Network;
-use super::recreate::{Objective, Rank, Recreate};
+use super::recreate::Recreate;
 use super::ruin::Ruin;
 use super::state::{Difference, State, Touched};
+use crate::effort::Effort;
 use crate::random::Random;
+use crate::search::objective::{Objective, Rank};
 
 /// Share of the steps that start on the longest route.
 const LONGEST_SHARE: f64 = 0.5;
@@ -64,7 +65,7 @@ pub(crate) struct Chain<A> {
 
 impl<A: Airspace> Chain<A> {
     pub fn new(network: &Network, state: State, objective: Objective, seed: u64, airspace: A) -> Self {
-        let (value, rank) = (objective.value(&state), objective.rank(&state));
+        let (value, rank) = (objective.value(state.costs()), objective.rank(state.costs()));
         Self {
             best: state.clone(),
             best_rank: rank,
@@ -87,8 +88,8 @@ impl<A: Airspace> Chain<A> {
         self.since_best.settle(&mut self.trial, &self.best);
         self.airspace.load(&self.best);
         self.objective = objective;
-        self.best_rank = objective.rank(&self.best);
-        self.current_value = objective.value(&self.best);
+        self.best_rank = objective.rank(self.best.costs());
+        self.current_value = objective.value(self.best.costs());
     }
 
     /// Goes on from another chain's best plan.
@@ -97,7 +98,7 @@ impl<A: Airspace> Chain<A> {
             own.clone_from(state);
         }
         self.since_best.clear();
-        self.restart(self.objective.aimed_at(state));
+        self.restart(self.objective.aimed_at(state.costs()));
     }
 
     /// Anneals until the share `until` of the effort is used, or no route is longer than `floor`, which none can undercut.
@@ -128,7 +129,7 @@ impl<A: Airspace> Chain<A> {
             &mut self.random,
             &mut self.touched,
         );
-        let value = if is_complete { self.objective.value(&self.trial) } else { f64::INFINITY };
+        let value = if is_complete { self.objective.value(self.trial.costs()) } else { f64::INFINITY };
         if value < threshold {
             self.accept(value);
         } else {
@@ -143,11 +144,11 @@ impl<A: Airspace> Chain<A> {
         self.current_value = value;
         self.airspace.keep();
         self.since_best.add(&self.touched);
-        let rank = self.objective.rank(&self.trial);
+        let rank = self.objective.rank(self.trial.costs());
         if rank.is_better(&self.best_rank) {
             self.best_rank = rank;
             self.since_best.settle(&mut self.best, &self.trial);
-            self.objective = self.objective.aimed_at(&self.trial);
+            self.objective = self.objective.aimed_at(self.trial.costs());
         }
     }
 

@@ -1,24 +1,24 @@
-//! Shortens the ring of one route by 2-opt and Or-opt over neighbour lists.
+//! Shortens the tour of one route by 2-opt and Or-opt over neighbour lists.
 //!
 //! Source: Bentley, Fast Algorithms for Geometric Traveling Salesman Problems, ORSA J. Computing 1992: neighbour lists,
-//! don't-look bits kept as a queue, reversal of the shorter side. Rings are arrays here, unlike in [`super::state`], because
+//! don't-look bits kept as a queue, reversal of the shorter side. Tours are arrays here, unlike in [`super::state`], because
 //! 2-opt turns paths round.
 
-use super::budget::Budget;
 use super::network::Network;
+use crate::effort::Budget;
 
 /// Neighbours tried per visit: on a lattice, the ring of eight and two more.
 const NUM_TRIED: usize = 10;
-/// Place of a visit that is not on this ring.
+/// Place of a visit that is not on this tour.
 const ELSEWHERE: u32 = u32::MAX;
 /// Visits looked at between two looks at the clock.
 const VISITS_PER_LOOK: usize = 32;
 /// What a move must gain, relative to the leg it starts from: above rounding, so that moves cannot undo each other for ever.
 const MIN_GAIN: f64 = 1e-9;
 
-/// Room for the places of the nodes of one ring at a time: made once, because it is as large as the farm.
+/// Room for the places of the nodes of one tour at a time: made once, because it is as large as the farm.
 pub(crate) struct Room {
-    /// Place of every node on the ring, or [`ELSEWHERE`].
+    /// Place of every node on the tour, or [`ELSEWHERE`].
     position: Vec<u32>,
     is_queued: Vec<bool>,
 }
@@ -30,7 +30,7 @@ impl Room {
     }
 }
 
-struct Ring<'a> {
+struct Tour<'a> {
     network: &'a Network,
     order: &'a mut [u32],
     position: &'a mut [u32],
@@ -38,16 +38,36 @@ struct Ring<'a> {
     is_queued: &'a mut [bool],
 }
 
-/// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
-/// it or the time is over. Looks at `queue` first, the last of it first, and else only at what its moves touch: all visits that
-/// such a move might begin at. Returns whether it did anything.
-pub(crate) fn improve_ring(
+/// Improves each route on its own by 2-opt and Or-opt, and stops between two moves when the time is over.
+pub(crate) fn improve_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
+    let mut room = Room::new(network);
+    for visits in routes {
+        let queue = visits.iter().rev().copied().collect();
+        improve_route(network, budget, visits, queue, &mut room);
+    }
+}
+
+/// Improves one route, from the visits of it that are in `queue`. Returns whether it did anything.
+pub(crate) fn improve_route(
     network: &Network,
     budget: &Budget<'_>,
-    order: &mut [u32],
+    visits: &mut Vec<u32>,
     queue: Vec<u32>,
     room: &mut Room,
 ) -> bool {
+    let depot = network.num_visits as u32;
+    visits.push(depot);
+    let has_moved = improve_tour(network, budget, visits, queue, room);
+    let place = visits.iter().position(|&node| node == depot).unwrap_or(0);
+    visits.rotate_left(place);
+    visits.remove(0);
+    has_moved
+}
+
+/// Improves `order`, visits and one depot copy as a closed tour, until no 2-opt or Or-opt move among near neighbours shortens
+/// it or the time is over. Looks at `queue` first, the last of it first, and else only at what its moves touch: all visits that
+/// such a move might begin at. Returns whether it did anything.
+fn improve_tour(network: &Network, budget: &Budget<'_>, order: &mut [u32], queue: Vec<u32>, room: &mut Room) -> bool {
     if order.len() < 5 || budget.is_time_over() {
         return false;
     }
@@ -57,11 +77,11 @@ pub(crate) fn improve_ring(
     for &visit in &queue {
         room.is_queued[visit as usize] = true;
     }
-    let mut ring = Ring { network, order, position: &mut room.position, queue, is_queued: &mut room.is_queued };
+    let mut tour = Tour { network, order, position: &mut room.position, queue, is_queued: &mut room.is_queued };
     let (mut num_looked_at, mut has_moved) = (0usize, false);
-    while let Some(visit) = ring.queue.pop() {
-        ring.is_queued[visit as usize] = false;
-        while ring.two_opt(visit) || ring.or_opt(visit) {
+    while let Some(visit) = tour.queue.pop() {
+        tour.is_queued[visit as usize] = false;
+        while tour.two_opt(visit) || tour.or_opt(visit) {
             has_moved = true;
         }
         num_looked_at += 1;
@@ -69,14 +89,14 @@ pub(crate) fn improve_ring(
             break;
         }
     }
-    for &node in ring.order.iter() {
-        ring.position[node as usize] = ELSEWHERE;
-        ring.is_queued[node as usize] = false;
+    for &node in tour.order.iter() {
+        tour.position[node as usize] = ELSEWHERE;
+        tour.is_queued[node as usize] = false;
     }
     has_moved
 }
 
-impl Ring<'_> {
+impl Tour<'_> {
     fn next(&self, visit: u32) -> u32 {
         let place = self.position[visit as usize] as usize + 1;
         self.order[if place == self.order.len() { 0 } else { place }]
@@ -131,7 +151,7 @@ impl Ring<'_> {
         let network = self.network;
         let size = self.order.len();
         for forward in [true, false] {
-            let step = |ring: &Self, visit| if forward { ring.next(visit) } else { ring.previous(visit) };
+            let step = |tour: &Self, visit| if forward { tour.next(visit) } else { tour.previous(visit) };
             let before = if forward { self.previous(a) } else { self.next(a) };
             let leg_before = network.leg(before, a);
             let mut end = a;

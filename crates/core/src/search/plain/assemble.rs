@@ -255,7 +255,7 @@ impl<'a> Assembly<'a> {
 mod tests {
     use super::*;
     use crate::geometry::Point;
-    use crate::search::testing::{assert_every_visit_once, farm_with_services, research_network, routes_of};
+    use crate::search::plain::testing::{assert_every_visit_once, farm_with_services, research_network, routes_of};
     use proptest::prelude::*;
 
     fn total(costs: &[f64]) -> f64 {

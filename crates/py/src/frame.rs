@@ -1,4 +1,4 @@
-//! `pondhop_core::travel`.
+//! `pondhop_core::frame`.
 
 use crate::problem::points;
 use numpy::{PyArray2, PyReadonlyArray2};
@@ -15,14 +15,14 @@ use pyo3::prelude::*;
 ///     The origin.
 #[pyclass(frozen, module = "pondhop")]
 pub struct LocalFrame {
-    inner: pondhop_core::travel::LocalFrame,
+    inner: pondhop_core::frame::LocalFrame,
 }
 
 #[pymethods]
 impl LocalFrame {
     #[new]
     fn new(longitude_deg: f64, latitude_deg: f64) -> Self {
-        Self { inner: pondhop_core::travel::LocalFrame::new(longitude_deg, latitude_deg) }
+        Self { inner: pondhop_core::frame::LocalFrame::new(longitude_deg, latitude_deg) }
     }
 
     /// Longitude and latitude of the origin in degrees.

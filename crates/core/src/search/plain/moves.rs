@@ -15,7 +15,7 @@ const MAX_ENDS: usize = 16;
 
 /// A leg to be taken out, from the end that the move comes to.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cut {
+pub(super) struct CutLeg {
     pub route: u32,
     /// Place of the leg on its route.
     pub position: u32,
@@ -30,7 +30,7 @@ pub(super) struct Cut {
     pub added: f64,
 }
 
-impl Cut {
+impl CutLeg {
     fn key(&self) -> u64 {
         u64::from(self.route) << 32 | u64::from(self.position)
     }
@@ -39,18 +39,18 @@ impl Cut {
 /// Cuts in the order they were made.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Move {
-    pub cuts: [Cut; MAX_CUTS],
+    pub cuts: [CutLeg; MAX_CUTS],
     pub num_cuts: usize,
     /// The cuts in their order along the routes.
     pub order: [u8; MAX_CUTS],
 }
 
 impl Move {
-    pub fn has(&self, cut: &Cut) -> bool {
+    pub fn has(&self, cut: &CutLeg) -> bool {
         self.cuts[..self.num_cuts].iter().any(|other| other.key() == cut.key())
     }
 
-    pub fn push(&mut self, cut: Cut) {
+    pub fn push(&mut self, cut: CutLeg) {
         let mut at = self.num_cuts;
         while at > 0 && self.cuts[self.order[at - 1] as usize].key() > cut.key() {
             self.order[at] = self.order[at - 1];
@@ -79,7 +79,7 @@ impl Move {
     }
 
     /// The cut that an end belongs to, and whether it is the end called `from`.
-    fn cut_of(&self, end: usize) -> (&Cut, bool) {
+    fn cut_of(&self, end: usize) -> (&CutLeg, bool) {
         let index = (end + 2 * self.num_cuts - 1) % (2 * self.num_cuts);
         (&self.cuts[index / 2], index.is_multiple_of(2))
     }
@@ -148,7 +148,7 @@ impl Pieces {
     #[inline]
     fn new(change: &Move, costs: &[f64]) -> Self {
         let mut pieces = Self::default();
-        let mut before: Option<(&Cut, usize)> = None;
+        let mut before: Option<(&CutLeg, usize)> = None;
         for &index in &change.order[..change.num_cuts] {
             let cut = &change.cuts[index as usize];
             let [from, to] = change.ends(index as usize);
@@ -170,7 +170,7 @@ impl Pieces {
         pieces
     }
 
-    fn end_route(&mut self, last: Option<(&Cut, usize)>, costs: &[f64]) {
+    fn end_route(&mut self, last: Option<(&CutLeg, usize)>, costs: &[f64]) {
         if let Some((cut, end)) = last {
             self.add_at_depot(end, costs[cut.route as usize] - cut.head_and_leg);
         }

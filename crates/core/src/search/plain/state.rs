@@ -5,6 +5,7 @@
 //! copied when a change is taken back: one step of the search costs O(visits touched), whatever the length of the routes.
 
 use super::network::Network;
+use crate::search::objective::RouteCosts;
 
 /// Route of a visit that no route makes at the moment.
 pub(crate) const ABSENT: u32 = u32::MAX;
@@ -50,20 +51,6 @@ pub(crate) struct State {
     pub route_costs: Vec<f64>,
     pub route_sizes: Vec<u32>,
     pub total: f64,
-}
-
-/// Costs of the routes of a plan.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RouteCosts {
-    pub longest: f64,
-    pub total: f64,
-}
-
-impl RouteCosts {
-    /// Of routes that cost this each.
-    pub fn of(costs: &[f64]) -> Self {
-        Self { longest: costs.iter().copied().fold(0.0, f64::max), total: costs.iter().sum() }
-    }
 }
 
 /// Which parts of a state one step touched; members may repeat.
@@ -180,6 +167,11 @@ impl State {
             node = self.nodes[node as usize].next;
         }
         visits
+    }
+
+    /// What its routes cost.
+    pub fn costs(&self) -> RouteCosts {
+        RouteCosts { longest: self.max_route_cost(), total: self.total }
     }
 
     /// Cost of the longest route.

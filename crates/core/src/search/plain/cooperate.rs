@@ -5,8 +5,8 @@
 
 use super::airspace::Airspace;
 use super::anneal::Chain;
-use super::recreate::Rank;
 use super::state::State;
+use crate::search::objective::Rank;
 use std::sync::{Barrier, Mutex, PoisonError};
 
 /// Where the threads of one search meet.

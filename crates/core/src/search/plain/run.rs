@@ -1,0 +1,177 @@
+//! One search from start to end: several threads, each from its first plans to the total of the best.
+
+use super::airspace::SharedAirspace;
+use super::anneal::{Chain, Schedule};
+use super::balance::balance;
+use super::construct::Sectors;
+use super::context::{MAX_HEAT, Search, TOTAL_HEAT};
+use super::cooperate::Meeting;
+use super::improve::improve_routes;
+use super::lin_kernighan::shorten;
+use super::network::Network;
+use super::population::Population;
+use super::rough::RoughPlan;
+use super::state::State;
+use crate::effort::{Budget, Effort};
+use crate::problem::Problem;
+use crate::search::objective::Rank;
+use crate::search::options::{Goal, Options, Outcome};
+
+/// Shares of the effort at which threads share their best plan while they work on the longest route.
+const MEETINGS: [f64; 2] = [0.5, 0.7];
+/// Share of the effort at which the work on the longest route ends.
+const MAX_END: f64 = 0.88;
+/// How long it takes to find neighbours and to do better with them than without, in times of making a rough plan.
+const NEIGHBOURS_COST: f64 = 28.0;
+/// How much longer than the longest a route may become, as a share, while a plan is shortened, before it is evened out again.
+const ALLOWANCES: [f64; 2] = [0.1, 0.02];
+/// Steps per visit that take as long as refining a plan, and the share of the effort that it may take: in less time, steps gain
+/// more.
+const REFINE_STEPS_PER_VISIT: f64 = 4.0;
+const MAX_REFINE_SHARE: f64 = 0.2;
+/// Plans routes for `problem`: see [`crate::search::solve`].
+pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
+    let budget = Budget::new(options.max_iterations, options.clock, options.watch);
+    let mut network = Network::new(problem);
+    if options.start.is_none() && options.clock.is_some() {
+        let rough = RoughPlan::new(&network);
+        // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
+        if budget.share(0) * NEIGHBOURS_COST > 1.0 {
+            return Outcome { routes: to_indices(rough.improved(&budget)), num_iterations: 0 };
+        }
+    }
+    network.find_neighbours();
+    let search = Search { network: &network, budget: &budget, options };
+    let meeting = Meeting::new(options.num_threads);
+    let thread = |index: usize| Thread { search: &search, meeting: &meeting, index };
+    let found: Vec<Found> = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..options.num_threads)
+            .map(|index| {
+                let thread = thread(index);
+                scope.spawn(move || thread.run())
+            })
+            .collect();
+        let first = thread(0).run();
+        let rest =
+            others.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        std::iter::once(first).chain(rest).collect()
+    });
+    let num_iterations = found[0].num_iterations;
+    // A longest route that does not matter is as good as any other.
+    let free_cost = found.iter().map(|found| found.free_cost).fold(f64::INFINITY, f64::min);
+    let rank = |plan: &State| Rank::new(plan.max_route_cost().max(free_cost), plan.total);
+    let better = |one: State, other: State| if rank(&other).is_clearly_better(&rank(&one)) { other } else { one };
+    let best = found.into_iter().map(|found| found.plan).reduce(better);
+    Outcome { routes: best.map_or_else(Vec::new, |best| to_indices(best.routes(&network))), num_iterations }
+}
+
+/// What one thread found.
+struct Found {
+    plan: State,
+    /// Up to which cost its longest route did not matter in the end.
+    free_cost: f64,
+    num_iterations: u64,
+}
+
+/// One of the threads of a search.
+struct Thread<'a> {
+    search: &'a Search<'a>,
+    meeting: &'a Meeting,
+    index: usize,
+}
+
+impl Thread<'_> {
+    /// The whole search: the longest route, by several plans if the effort allows, then the total of the best. Returns the
+    /// plan and the number of steps.
+    fn run(&self) -> Found {
+        let search = self.search;
+        let mut effort = Effort::new(search.budget);
+        let mut population = match (search.options.start, search.options.goal) {
+            (Some(routes), _) => Population::single(search.chain_from(&to_nodes(routes), self.index as u64)),
+            (None, Goal::Max) => Population::race(search, &mut effort, self.index),
+            (None, Goal::Total) => Population::single(self.fewest_routes()),
+        };
+        let floor = search.floor();
+        let max_end = if population.best().best.max_route_cost() <= search.goal_cap() { 0.0 } else { MAX_END };
+        let schedule = Schedule::scaled(effort.share(), max_end, MAX_HEAT, population.best().best.max_route_cost());
+        // Every thread comes to every meeting, also one that has nothing left to do, or the others would wait for ever.
+        for until in MEETINGS.into_iter().chain([MAX_END]) {
+            population.improve(search, &mut effort, &schedule, until.min(max_end), floor);
+            if let Some(best) = self.meeting.best_of_all(self.index, population.best()) {
+                population.welcome(&best);
+            }
+        }
+        let mut chain = population.into_best();
+        self.finish(&mut chain, &mut effort);
+        let free_cost = if search.is_lexicographic() { 0.0 } else { chain.objective.cap };
+        Found { plan: chain.best, free_cost, num_iterations: effort.num_iterations }
+    }
+
+    /// Makes the most of the plan that is best: shortens it and evens it out, then works on the total.
+    fn finish(&self, chain: &mut Chain<SharedAirspace>, effort: &mut Effort<'_>) {
+        if effort.share_of_steps(REFINE_STEPS_PER_VISIT * self.search.network.num_visits as f64) <= MAX_REFINE_SHARE {
+            self.refine(chain);
+        } else {
+            self.search.balance(chain);
+        }
+        effort.longest_elsewhere = f64::INFINITY;
+        let halves = [(effort.share() + 1.0) / 2.0, 1.0];
+        // With slack, the longest route must not be shortened again.
+        let ends = if self.search.is_lexicographic() { &halves[..] } else { &halves[1..] };
+        for &end in ends {
+            chain.restart(self.search.total_objective(&chain.best));
+            let schedule = Schedule::scaled(effort.share(), end, TOTAL_HEAT, chain.best.max_route_cost());
+            chain.anneal(self.search.network, effort, &schedule, end, 0.0);
+            if end < 1.0 {
+                // Routes that became shorter have room for visits of the longest one.
+                self.search.balance(chain);
+            }
+        }
+    }
+
+    /// Shortens a plan and evens it out in turn, where that can gain anything.
+    fn refine(&self, chain: &mut Chain<SharedAirspace>) {
+        if !self.search.can_be_evened_out(&chain.best) {
+            return;
+        }
+        let (mut state, mut best) = (chain.best.clone(), chain.best.clone());
+        let rank = |plan: &State| Rank::new(plan.max_route_cost(), plan.total);
+        let mut links = Vec::new();
+        for allowance in ALLOWANCES {
+            let cap = state.max_route_cost() * (1.0 + allowance);
+            shorten(self.search.network, self.search.budget, &mut state, cap, &mut links);
+            balance(self.search.network, self.search.budget, &mut state);
+            if rank(&state).is_clearly_better(&rank(&best)) {
+                best.clone_from(&state);
+            }
+        }
+        if rank(&best).is_clearly_better(&rank(&chain.best)) {
+            chain.adopt(&best);
+        }
+    }
+
+    /// A start for the least total: as few routes as the drones' limit allows, because every route costs two depot legs, and no
+    /// later step is wide enough to give up a long one.
+    fn fewest_routes(&self) -> Chain<SharedAirspace> {
+        let sectors = Sectors::new(self.search.network);
+        let mut num_routes = 1;
+        loop {
+            let mut routes = sectors.routes(&vec![1.0; num_routes]);
+            improve_routes(self.search.network, self.search.budget, &mut routes);
+            let chain = self.search.chain_from(&routes, self.index as u64);
+            if num_routes == self.search.network.num_routes || chain.best.max_route_cost() <= self.search.goal_cap() {
+                return chain;
+            }
+            num_routes += 1;
+        }
+    }
+}
+
+pub(super) fn to_nodes(routes: &[Vec<usize>]) -> Vec<Vec<u32>> {
+    routes.iter().map(|route| route.iter().map(|&visit| visit as u32).collect()).collect()
+}
+
+pub(crate) fn to_indices(routes: Vec<Vec<u32>>) -> Vec<Vec<usize>> {
+    let to_index = |route: Vec<u32>| route.into_iter().map(|visit| visit as usize).collect::<Vec<usize>>();
+    routes.into_iter().filter(|route| !route.is_empty()).map(to_index).collect()
+}
