@@ -1,14 +1,20 @@
 //! The immutable result of planning: routes, their schedule and what is wrong with them.
 
+use crate::travel::Leg;
+
 /// When one visit of a route happens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
     /// Index of the visit in the problem.
     pub visit: usize,
-    /// Seconds after take-off from the depot when the drone arrives.
+    /// The leg that leads to it; the take-off belongs to the first of a route.
+    pub leg: Leg,
+    /// Seconds after the start of the route when the drone arrives.
     pub arrival: f64,
-    /// Seconds after take-off from the depot when the drone leaves.
+    /// Seconds after the start of the route when the drone leaves.
     pub departure: f64,
+    /// Joules that the time on station takes.
+    pub service_energy: f64,
 }
 
 /// What one drone flies: depot, stops in flying order, depot.
@@ -16,16 +22,25 @@ pub struct Stop {
 pub struct Route {
     /// The visits in flying order; never empty.
     pub stops: Vec<Stop>,
+    /// The leg from the last stop to the depot.
+    pub last_leg: Leg,
     /// Length from depot to depot, in length units.
     pub length: f64,
-    /// Seconds from depot to depot: legs and service.
+    /// Seconds from depot to depot: take-off, legs, service and landing.
     pub duration: f64,
+    /// Joules from depot to depot; 0 where nothing is known about it.
+    pub energy: f64,
 }
 
 impl Route {
     /// Indices of the visits in flying order.
     pub fn visits(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.stops.iter().map(|stop| stop.visit)
+    }
+
+    /// The legs in flying order, one more than there are stops.
+    pub fn legs(&self) -> impl Iterator<Item = Leg> + '_ {
+        self.stops.iter().map(|stop| stop.leg).chain([self.last_leg])
     }
 }
 
@@ -73,6 +88,16 @@ pub enum Violation {
         duration: f64,
         /// The limit in seconds.
         max_duration: f64,
+    },
+    /// A route that takes more energy than a drone may use.
+    #[error("route {route} takes {energy} J, a drone may use {usable_energy} J")]
+    TooMuchEnergy {
+        /// Index of the route.
+        route: usize,
+        /// Its energy in joules.
+        energy: f64,
+        /// The limit in joules.
+        usable_energy: f64,
     },
 }
 
