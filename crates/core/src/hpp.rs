@@ -28,6 +28,7 @@
 //!   0.5 to 0.95 of the unit square's side on the paper's farms (median 0.79). The pitch is not given but measured (`pitch`); on the paper's
 //!   farms it is the same.
 
+use crate::direction::fly_cheaper_way;
 use crate::geometry::{Point, convex_hull_within, cross, dot, extent};
 use crate::kmeans::{Clustering, kmeans};
 use crate::problem::Problem;
@@ -100,8 +101,11 @@ pub fn plan_clusters(problem: &Problem, seed: u64) -> HppPlan {
             let hull: Vec<Point> = corners.iter().map(|&corner| own[corner]).collect();
             let path = cheapest_path(&hull, depot, pitch, tolerance);
             let order = order_along(&path, &own, pitch, tolerance);
-            let global = |indices: Vec<usize>| indices.into_iter().map(|index| members[index]).collect();
-            Cluster { route: global(order), hull: global(corners), path: path.corners.into_iter().map(leave).collect() }
+            let global =
+                |indices: Vec<usize>| -> Vec<usize> { indices.into_iter().map(|index| members[index]).collect() };
+            let mut route = global(order);
+            fly_cheaper_way(problem, &mut route);
+            Cluster { route, hull: global(corners), path: path.corners.into_iter().map(leave).collect() }
         })
         .collect();
     HppPlan { pitch: pitch * unit, clusters }

@@ -11,21 +11,23 @@
 //! 7. [`generate`]: research farms, as the paper draws them.
 //! 8. [`problem`]: what is to be planned; validated once, then immutable.
 //! 9. [`travel`]: what a leg costs.
-//! 10. [`plan`]: the immutable result: routes, schedule, violations.
-//! 11. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
-//! 12. [`separation`]: how well a plan keeps the drones apart.
-//! 13. [`bound`]: lower bounds: what no plan can beat.
-//! 14. [`kmeans`]: clusters of nearby points.
-//! 15. [`sweep`]: back-and-forth coverage of a convex polygon.
-//! 16. [`hpp`]: the paper's planner.
-//! 17. [`search`]: the min-max optimiser.
-//! 18. [`territory`]: balanced routes in territories that do not overlap.
-//! 19. [`attention`]: the attention model, a trained network that builds routes.
+//! 10. [`direction`]: which way round a route is flown.
+//! 11. [`plan`]: the immutable result: routes, schedule, violations.
+//! 12. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
+//! 13. [`separation`]: how well a plan keeps the drones apart.
+//! 14. [`bound`]: lower bounds: what no plan can beat.
+//! 15. [`kmeans`]: clusters of nearby points.
+//! 16. [`sweep`]: back-and-forth coverage of a convex polygon.
+//! 17. [`hpp`]: the paper's planner.
+//! 18. [`search`]: the min-max optimiser.
+//! 19. [`territory`]: balanced routes in territories that do not overlap.
+//! 20. [`attention`]: the attention model, a trained network that builds routes.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod attention;
 pub mod bound;
+pub mod direction;
 pub mod effort;
 pub mod error;
 pub mod evaluate;

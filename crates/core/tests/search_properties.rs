@@ -6,7 +6,7 @@ use pondhop_core::evaluate::evaluate;
 use pondhop_core::generate::{Variant, generate};
 use pondhop_core::geometry::Point;
 use pondhop_core::plan::Plan;
-use pondhop_core::problem::{Depot, Problem, VehicleType, Visit};
+use pondhop_core::problem::{Depot, Problem, VehicleType, Visit, WayHome};
 use pondhop_core::search::{Goal, Options, solve};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
@@ -23,15 +23,23 @@ fn iterations(max_iterations: u64) -> Options<'static> {
     Options { max_iterations: Some(max_iterations), ..Options::default() }
 }
 
-/// The least longest route, and the least total among plans that have it, by trying every plan.
+/// The least longest route, and the least total among plans that have it.
 fn optimum(problem: &Problem) -> (f64, f64) {
-    fn extend(problem: &Problem, routes: &mut Vec<Vec<usize>>, visit: usize, best: &mut (f64, f64)) {
-        if visit == problem.num_visits() {
-            let plan = evaluate(problem, routes).unwrap();
-            let (longest, total) = (plan.makespan(), plan.routes.iter().map(|route| route.duration).sum::<f64>());
-            if longest < best.0 - 1e-9 || (longest < best.0 + 1e-9 && total < best.1) {
-                *best = (longest, total);
-            }
+    let mut best = (f64::INFINITY, f64::INFINITY);
+    for routes in every_plan(problem) {
+        let plan = evaluate(problem, &routes).unwrap();
+        let (longest, total) = (plan.makespan(), plan.routes.iter().map(|route| route.duration).sum::<f64>());
+        if longest < best.0 - 1e-9 || (longest < best.0 + 1e-9 && total < best.1) {
+            best = (longest, total);
+        }
+    }
+    best
+}
+
+fn every_plan(problem: &Problem) -> Vec<Vec<Vec<usize>>> {
+    fn extend(routes: &mut Vec<Vec<usize>>, visit: usize, num_visits: usize, plans: &mut Vec<Vec<Vec<usize>>>) {
+        if visit == num_visits {
+            plans.push(routes.iter().filter(|route| !route.is_empty()).cloned().collect());
             return;
         }
         let mut has_tried_empty = false;
@@ -42,14 +50,14 @@ fn optimum(problem: &Problem) -> (f64, f64) {
             }
             for place in 0..=routes[route].len() {
                 routes[route].insert(place, visit);
-                extend(problem, routes, visit + 1, best);
+                extend(routes, visit + 1, num_visits, plans);
                 routes[route].remove(place);
             }
         }
     }
-    let mut best = (f64::INFINITY, f64::INFINITY);
-    extend(problem, &mut vec![vec![]; problem.vehicle_type().num_available], 0, &mut best);
-    best
+    let mut plans = Vec::new();
+    extend(&mut vec![vec![]; problem.vehicle_type().num_available], 0, problem.num_visits(), &mut plans);
+    plans
 }
 
 fn points(max_size: usize) -> impl Strategy<Value = Vec<Point>> {
@@ -83,7 +91,7 @@ proptest! {
         ponds in prop_oneof![points(6), lattice_points(6)],
         services in prop::collection::vec(0.0..2.0f64, 6), leg_stop_duration in 0.0..1.0f64, num_routes in 1..4usize,
     ) {
-        let visits = ponds.iter().zip(&services).map(|(&position, &service_duration)| Visit { position, service_duration });
+        let visits = ponds.iter().zip(&services).map(|(&position, &service_duration)| Visit { service_duration, ..Visit::at(position) });
         let vehicle_type = VehicleType { leg_stop_duration, speed: 2.0, ..VehicleType::unlimited(num_routes) };
         let problem = Problem::new(Depot { position: Point::new(0.5, 0.0) }, visits.collect(), vehicle_type).unwrap();
         // A local optimum may hold one seed, not all of three.
@@ -94,6 +102,36 @@ proptest! {
         let (longest, total) = optimum(&problem);
         prop_assert!((found.0 - longest).abs() <= 1e-9 * longest.max(1.0), "{found:?} {longest}");
         prop_assert!(found.1 <= 1.01 * total + 1e-9, "{found:?} {total}");
+    }
+
+    #[test]
+    fn routes_with_a_way_home_of_their_own_are_flown_the_cheaper_way(
+        ponds in prop_oneof![points(6), lattice_points(6)], takeoff_duration in 0.0..2.0f64,
+        home_speed in 0.5..6.0f64, num_routes in 1..4usize,
+    ) {
+        let visits: Vec<Visit> = ponds.iter().map(|&position| Visit::at(position)).collect();
+        let way_home = Some(WayHome { speed: home_speed, fixed_duration: 1.5 });
+        let drones = VehicleType { speed: 2.0, leg_stop_duration: 0.3, ..VehicleType::unlimited(num_routes) };
+        let depot = Depot { position: Point::new(0.5, 0.0) };
+        let problem = Problem::new(depot, visits, VehicleType { takeoff_duration, way_home, ..drones }).unwrap();
+        // What the search minimises: the mean of both ways of each route.
+        let mean = |routes: &[Vec<usize>]| {
+            let turned: Vec<Vec<usize>> = routes.iter().map(|route| route.iter().rev().copied().collect()).collect();
+            let both = [routes, &turned].map(|routes| evaluate(&problem, routes).unwrap());
+            let pairs = both[0].routes.iter().zip(&both[1].routes);
+            pairs.map(|(one, other)| 0.5 * (one.duration + other.duration)).fold(0.0, f64::max)
+        };
+        let least = every_plan(&problem).iter().map(|routes| mean(routes)).fold(f64::INFINITY, f64::min);
+        let plans = (1..=3).map(|seed| solve(&problem, &Options { seed, ..iterations(5_000) }).routes);
+        let found = plans.min_by(|a, b| mean(a).total_cmp(&mean(b))).unwrap();
+        prop_assert!((mean(&found) - least).abs() <= 1e-9 * least, "{} {least}", mean(&found));
+        let plan = evaluate(&problem, &found).unwrap();
+        prop_assert!(plan.makespan() <= least * (1.0 + 1e-9));
+        for route in &found {
+            let turned: Vec<usize> = route.iter().rev().copied().collect();
+            let [flown, turned] = [route.clone(), turned].map(|route| evaluate(&problem, &[route]).unwrap().makespan());
+            prop_assert!(flown <= turned + 1e-9);
+        }
     }
 
     #[test]

@@ -63,7 +63,7 @@ pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<u
     anneal(network, &mut effort, &mut chain, MAX_END, MAX_HEAT);
     chain.restart(Objective::total_within(chain.best.max_route_cost()));
     anneal(network, &mut effort, &mut chain, 1.0, TOTAL_HEAT);
-    to_indices(chain.best.routes(network))
+    to_indices(problem, chain.best.routes(network))
 }
 
 fn anneal(network: &Network, effort: &mut Effort<'_>, chain: &mut Chain<Hulls<'_>>, end: f64, heat: (f64, f64)) {

@@ -167,6 +167,9 @@ impl<'a> Routes<'a> {
 
     #[inline]
     fn leg(&self, from: u32, to: u32) -> f64 {
+        if let Some(leg) = self.network.priced_leg(from, to) {
+            return leg;
+        }
         let (from, to) = (&self.places[from as usize], &self.places[to as usize]);
         let (x, y) = (to.x - from.x, to.y - from.y);
         leg_of_length((x * x + y * y).sqrt(), self.network.stop)

@@ -3,10 +3,15 @@
 //! Costs are seconds ([`crate::travel::leg_duration`]); in a research instance a second is a length unit. There is no n x n
 //! matrix: a leg is computed from coordinates (one square root), and the legs to the nearest neighbours are stored beside
 //! them, because those are what insertions ask for.
+//!
+//! A route costs the same both ways. Where drones take off or come home in a way of their own, a leg at the depot is therefore
+//! priced at half of what it costs out and home: a route then costs the mean of both ways, and who turns every route to its
+//! cheaper way ([`crate::direction`]) gets no route that costs more than it did here.
 
 use crate::geometry::Point;
 use crate::neighbours::KdTree;
-use crate::problem::Problem;
+use crate::problem::{Problem, VehicleType};
+use crate::travel::{LegKind, leg_duration, leg_length};
 
 /// Nearest neighbours kept per visit. The 8 lattice neighbours and most of the next ring; 24 did not shorten plans, and
 /// slowed the steps by a quarter.
@@ -27,6 +32,11 @@ pub(super) fn leg_of_length(length: f64, stop: f64) -> f64 {
     if length > 0.0 { length + stop } else { 0.0 }
 }
 
+/// The mean of what a leg of `length` at the depot costs out and home.
+fn mean_depot_leg(length: f64, vehicle_type: &VehicleType) -> f64 {
+    0.5 * (leg_duration(length, LegKind::First, vehicle_type) + leg_duration(length, LegKind::Last, vehicle_type))
+}
+
 /// Visits `0..num_visits`, then one copy of the depot per route: `num_visits + route`.
 #[derive(Debug)]
 pub(crate) struct Network {
@@ -36,8 +46,13 @@ pub(crate) struct Network {
     pub points: Vec<Point>,
     /// Time on station of all nodes; 0 for the depot copies.
     pub services: Vec<f64>,
-    /// Cost of the leg from the depot to each visit.
+    /// Cost of the leg between the depot and each visit.
     pub depot_legs: Vec<f64>,
+    /// What a route that visits it pays at least to reach each visit, or to come home from it; empty where that is the leg
+    /// between the depot and the visit.
+    least_ways: Vec<f64>,
+    /// Nodes from this on have legs of a price of their own: the copies of the depot, or none.
+    first_priced: u32,
     /// Longest time a drone can be under way.
     pub max_route_cost: f64,
     /// Fixed time per leg.
@@ -64,6 +79,8 @@ impl Network {
             points,
             services,
             depot_legs: Vec::new(),
+            least_ways: Vec::new(),
+            first_priced: u32::MAX,
             max_route_cost: vehicle_type.max_duration,
             stop: vehicle_type.leg_stop_duration,
             neighbours: Vec::new(),
@@ -72,19 +89,53 @@ impl Network {
         network.depot_legs = (0..num_visits)
             .map(|visit| network.leg_between(network.points[num_visits], network.points[visit]))
             .collect();
+        if !vehicle_type.has_plain_depot_legs() {
+            network.price_depot_legs(problem);
+        }
         network
     }
 
-    /// Cost of the leg between two places.
+    fn price_depot_legs(&mut self, problem: &Problem) {
+        let vehicle_type = problem.vehicle_type();
+        let depot = problem.depot().position;
+        let lengths = problem.visits().iter().map(|visit| leg_length(depot, visit.position));
+        self.depot_legs = lengths.clone().map(|length| mean_depot_leg(length, &vehicle_type)).collect();
+        // Where drones come home more slowly than they fly, a visit on the way may save time.
+        let saved_per_length = vehicle_type
+            .way_home
+            .map_or(0.0, |way_home| f64::max(0.5 / way_home.speed - 0.5 / vehicle_type.speed, 0.0));
+        self.least_ways =
+            self.depot_legs.iter().zip(lengths).map(|(leg, length)| leg - saved_per_length * length).collect();
+        self.first_priced = self.num_visits as u32;
+    }
+
+    /// Whether the legs at the depot have a price of their own.
     #[inline]
-    pub fn leg_between(&self, from: Point, to: Point) -> f64 {
+    pub fn has_priced_depot_legs(&self) -> bool {
+        self.first_priced != u32::MAX
+    }
+
+    /// Cost of the leg between two places that are not the depot, or where it has no price of its own.
+    #[inline]
+    fn leg_between(&self, from: Point, to: Point) -> f64 {
         leg_of_length(from.distance(to), self.stop)
     }
 
     /// Cost of the leg between two nodes.
     #[inline]
     pub fn leg(&self, from: u32, to: u32) -> f64 {
-        self.leg_between(self.points[from as usize], self.points[to as usize])
+        match self.priced_leg(from, to) {
+            Some(leg) => leg,
+            None => self.leg_between(self.points[from as usize], self.points[to as usize]),
+        }
+    }
+
+    /// Cost of the leg between two nodes, if it has a price of its own.
+    #[inline]
+    pub fn priced_leg(&self, from: u32, to: u32) -> Option<f64> {
+        let (visit, depot) = (from.min(to), from.max(to));
+        // A route without visits flies from one copy of the depot to another.
+        (depot >= self.first_priced).then(|| self.depot_legs.get(visit as usize).copied().unwrap_or(0.0))
     }
 
     /// Where the depot is.
@@ -94,7 +145,8 @@ impl Network {
 
     /// No plan has a cheaper longest route: the farthest visit must be made and left.
     pub fn farthest_visit_bound(&self) -> f64 {
-        let there_and_back = self.depot_legs.iter().zip(&self.services).map(|(leg, service)| 2.0 * leg + service);
+        let ways = if self.has_priced_depot_legs() { &self.least_ways } else { &self.depot_legs };
+        let there_and_back = ways.iter().zip(&self.services).map(|(way, service)| 2.0 * way + service);
         there_and_back.fold(0.0, f64::max)
     }
 
@@ -129,5 +181,80 @@ impl Network {
             }));
         }
         self.neighbours = neighbours;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::direction::fly_cheaper_way;
+    use crate::evaluate::evaluate;
+    use crate::problem::{Depot, Visit, WayHome};
+    use proptest::prelude::*;
+
+    /// Few ponds, some of which lie at the depot, and drones that take off and perhaps come home in their own way.
+    fn problems() -> impl Strategy<Value = Problem> {
+        let place = prop_oneof![(-3.0..3.0f64, -3.0..3.0f64), Just((0.0, 0.0))];
+        let way_home = prop::option::of((0.3..8.0f64, 0.0..5.0f64));
+        (prop::collection::vec((place, 0.0..2.0f64), 1..6), 0.0..4.0f64, way_home).prop_map(
+            |(visits, takeoff_duration, way_home)| {
+                let visits = visits
+                    .into_iter()
+                    .map(|((x, y), service_duration)| Visit { service_duration, ..Visit::at(Point::new(x, y)) });
+                let vehicle_type = VehicleType {
+                    speed: 2.0,
+                    leg_stop_duration: 0.7,
+                    takeoff_duration,
+                    way_home: way_home.map(|(speed, fixed_duration)| WayHome { speed, fixed_duration }),
+                    ..VehicleType::unlimited(1)
+                };
+                Problem::new(Depot { position: Point::default() }, visits.collect(), vehicle_type).unwrap()
+            },
+        )
+    }
+
+    fn permutations(num_visits: usize) -> Vec<Vec<usize>> {
+        if num_visits == 0 {
+            return vec![vec![]];
+        }
+        let shorter = permutations(num_visits - 1);
+        let with_last = |place: usize| {
+            shorter.iter().map(move |order| {
+                let mut order = order.clone();
+                order.insert(place, num_visits - 1);
+                order
+            })
+        };
+        (0..num_visits).flat_map(with_last).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn a_route_costs_the_mean_of_both_ways(problem in problems()) {
+            let network = Network::new(&problem);
+            let duration = |route: &[usize]| evaluate(&problem, &[route.to_vec()]).unwrap().makespan();
+            for order in permutations(problem.num_visits()) {
+                let turned: Vec<usize> = order.iter().rev().copied().collect();
+                let nodes: Vec<u32> = order.iter().map(|&visit| visit as u32).collect();
+                let cost = network.route_cost(&nodes);
+                prop_assert!((cost - 0.5 * (duration(&order) + duration(&turned))).abs() < 1e-9);
+                let mut flown = order.clone();
+                fly_cheaper_way(&problem, &mut flown);
+                prop_assert!(duration(&flown) <= cost + 1e-9);
+                prop_assert!(duration(&flown) <= duration(&order).min(duration(&turned)) + 1e-9);
+                prop_assert!(network.farthest_visit_bound() <= cost + 1e-9);
+            }
+        }
+
+        #[test]
+        fn every_leg_at_the_depot_has_one_price(problem in problems()) {
+            let network = Network::new(&problem);
+            let depot = network.num_visits as u32;
+            for visit in 0..depot {
+                prop_assert_eq!(network.leg(depot, visit), network.depot_legs[visit as usize]);
+                prop_assert_eq!(network.leg(visit, depot), network.depot_legs[visit as usize]);
+            }
+            prop_assert_eq!(network.leg(depot, depot), 0.0);
+        }
     }
 }

@@ -124,6 +124,23 @@ fn cheapest_place(
     blinks: &Blinks,
     longest_end: f64,
 ) -> Option<Place> {
+    if network.has_priced_depot_legs() {
+        cheapest_place_priced::<true>(network, state, visit, objective, airspace, blinks, longest_end)
+    } else {
+        cheapest_place_priced::<false>(network, state, visit, objective, airspace, blinks, longest_end)
+    }
+}
+
+/// The same, compiled for legs at the depot that have a price of their own and for those that have none.
+fn cheapest_place_priced<const IS_PRICED: bool>(
+    network: &Network,
+    state: &State,
+    visit: u32,
+    objective: &Objective,
+    airspace: &mut impl Airspace,
+    blinks: &Blinks,
+    longest_end: f64,
+) -> Option<Place> {
     let overflow_price = OVERFLOW_PRICES[(blinks.salt >> 63) as usize];
     let insertion = Insertion::new(network, visit, objective.target, overflow_price);
     let mut cheapest = Cheapest { state, visit, objective, airspace, blinks, price: f64::INFINITY, place: None };
@@ -136,7 +153,7 @@ fn cheapest_place(
         if 2.0 * leg + insertion.service - greater(node.legs[BEFORE], node.legs[AFTER]) >= cheapest.price {
             continue;
         }
-        let offers = insertion.offers_beside(node, leg, state.route_costs[node.route as usize]);
+        let offers = insertion.offers_beside::<IS_PRICED>(node, leg, state.route_costs[node.route as usize]);
         if lesser(offers.prices[BEFORE], offers.prices[AFTER]) < cheapest.price {
             cheapest.consider(neighbour.node, leg, &offers);
         }
@@ -158,7 +175,11 @@ fn cheapest_place(
         let node = &state.nodes[depot as usize];
         let is_empty = node.next == depot;
         if least - greater(node.legs[BEFORE], node.legs[AFTER]) < cheapest.price || is_empty {
-            cheapest.consider(depot, leg, &insertion.offers_beside(node, leg, state.route_costs[route as usize]));
+            cheapest.consider(
+                depot,
+                leg,
+                &insertion.offers_beside::<IS_PRICED>(node, leg, state.route_costs[route as usize]),
+            );
         }
     }
     cheapest.place
@@ -170,6 +191,8 @@ struct Insertion {
     y: f64,
     service: f64,
     stop: f64,
+    depot_leg: f64,
+    first_depot: u32,
     target: f64,
     overflow_price: f64,
 }
@@ -185,19 +208,23 @@ struct Offers {
 impl Insertion {
     fn new(network: &Network, visit: u32, target: f64, overflow_price: f64) -> Self {
         let (point, service) = (network.points[visit as usize], network.services[visit as usize]);
-        Self { x: point.x, y: point.y, service, stop: network.stop, target, overflow_price }
+        let (depot_leg, first_depot) = (network.depot_legs[visit as usize], network.num_visits as u32);
+        Self { x: point.x, y: point.y, service, stop: network.stop, depot_leg, first_depot, target, overflow_price }
     }
 
     /// The places beside `node`, which is `leg` away. Most of the time of a search is spent here: both places are priced at
     /// once, without a branch, so that one instruction does for both.
     #[inline(always)]
-    fn offers_beside(&self, node: &Node, leg: f64, route_cost: f64) -> Offers {
+    fn offers_beside<const IS_PRICED: bool>(&self, node: &Node, leg: f64, route_cost: f64) -> Offers {
         let mut offers = Offers { other_legs: [0.0; 2], added: [0.0; 2], prices: [0.0; 2] };
         let (excess, leg) = (route_cost - self.target, leg + self.service);
         for side in [BEFORE, AFTER] {
             let (dx, dy) = (node.xs[side] - self.x, node.ys[side] - self.y);
             let length = (dx * dx + dy * dy).sqrt();
-            let other_leg = leg_of_length(length, self.stop);
+            let mut other_leg = leg_of_length(length, self.stop);
+            if IS_PRICED && [node.previous, node.next][side] >= self.first_depot {
+                other_leg = self.depot_leg;
+            }
             let added = leg + other_leg - node.legs[side];
             let overflow = lesser(greater(excess + added, 0.0), added);
             offers.other_legs[side] = other_leg;

@@ -341,9 +341,10 @@ mod tests {
     #[test]
     fn balancing_evens_out_what_service_makes_uneven() {
         // All the service is in the east.
-        let visits = turned_grid(20, 10)
-            .into_iter()
-            .map(|position| Visit { position, service_duration: if position.x > 30.0 { 30.0 } else { 0.0 } });
+        let visits = turned_grid(20, 10).into_iter().map(|position| Visit {
+            service_duration: if position.x > 30.0 { 30.0 } else { 0.0 },
+            ..Visit::at(position)
+        });
         let depot = Depot { position: Point::new(30.0, 0.0) };
         let network = Network::new(&Problem::new(depot, visits.collect(), VehicleType::unlimited(4)).unwrap());
         let plan = RoughPlan::new(&network);

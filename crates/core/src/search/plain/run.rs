@@ -12,6 +12,7 @@ use super::network::Network;
 use super::population::Population;
 use super::rough::RoughPlan;
 use super::state::State;
+use crate::direction::fly_cheaper_way;
 use crate::effort::{Budget, Effort};
 use crate::problem::Problem;
 use crate::search::objective::Rank;
@@ -37,7 +38,8 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
         let rough = RoughPlan::new(&network);
         // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
         if budget.share(0) * NEIGHBOURS_COST > 1.0 {
-            return Outcome { routes: to_indices(rough.improved(&budget)), num_iterations: 0 };
+            let routes = to_indices(problem, rough.improved(&budget));
+            return Outcome { routes, num_iterations: 0 };
         }
     }
     network.find_neighbours();
@@ -62,7 +64,8 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let rank = |plan: &State| Rank::new(plan.max_route_cost().max(free_cost), plan.total);
     let better = |one: State, other: State| if rank(&other).is_clearly_better(&rank(&one)) { other } else { one };
     let best = found.into_iter().map(|found| found.plan).reduce(better);
-    Outcome { routes: best.map_or_else(Vec::new, |best| to_indices(best.routes(&network))), num_iterations }
+    let routes = best.map_or_else(Vec::new, |best| to_indices(problem, best.routes(&network)));
+    Outcome { routes, num_iterations }
 }
 
 /// What one thread found.
@@ -171,7 +174,12 @@ pub(super) fn to_nodes(routes: &[Vec<usize>]) -> Vec<Vec<u32>> {
     routes.iter().map(|route| route.iter().map(|&visit| visit as u32).collect()).collect()
 }
 
-pub(crate) fn to_indices(routes: Vec<Vec<u32>>) -> Vec<Vec<usize>> {
-    let to_index = |route: Vec<u32>| route.into_iter().map(|visit| visit as usize).collect::<Vec<usize>>();
-    routes.into_iter().filter(|route| !route.is_empty()).map(to_index).collect()
+/// The routes that were found, without the empty ones, as they are to be flown.
+pub(crate) fn to_indices(problem: &Problem, routes: Vec<Vec<u32>>) -> Vec<Vec<usize>> {
+    let to_route = |route: Vec<u32>| {
+        let mut route: Vec<usize> = route.into_iter().map(|visit| visit as usize).collect();
+        fly_cheaper_way(problem, &mut route);
+        route
+    };
+    routes.into_iter().filter(|route| !route.is_empty()).map(to_route).collect()
 }

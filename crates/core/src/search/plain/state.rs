@@ -285,6 +285,7 @@ mod tests {
         let visits = places.iter().zip(0..).map(|(&(x, y), index)| Visit {
             position: Point::new(f64::from(x), f64::from(y)),
             service_duration: f64::from(index % 3),
+            service_energy: 0.0,
         });
         let vehicle_type = VehicleType { speed: 2.0, leg_stop_duration: 0.5, ..VehicleType::unlimited(num_routes) };
         Network::new(&Problem::new(Depot { position: Point::new(0.0, 0.0) }, visits.collect(), vehicle_type).unwrap())

@@ -5,7 +5,7 @@ use super::state::State;
 use crate::effort::Budget;
 use crate::generate::{Variant, generate};
 use crate::geometry::Point;
-use crate::problem::{Depot, Problem, VehicleType, Visit};
+use crate::problem::{Depot, Problem, VehicleType, Visit, WayHome};
 
 pub(super) fn network_of(problem: &Problem) -> Network {
     let mut network = Network::new(problem);
@@ -18,7 +18,8 @@ pub(super) fn research_network(depot: Point, ponds: &[Point], num_routes: usize)
     network_of(&Problem::research(depot, ponds, num_routes).unwrap())
 }
 
-/// A farm with services and a speed. With stops, some ponds lie in one place, or at the depot, where a leg takes no time.
+/// A farm with services and a speed. With stops, some ponds lie in one place, or at the depot, where a leg takes no time, and
+/// drones take off and come home in a way of their own.
 pub(super) fn farm_with_services(
     num_ponds: usize,
     num_routes: usize,
@@ -32,9 +33,16 @@ pub(super) fn farm_with_services(
         (farm.depot, farm.ponds) = (lattice(farm.depot), farm.ponds.into_iter().map(lattice).collect());
     }
     let visits = farm.ponds.iter().zip(services);
-    let visits = visits.map(|(&position, &service_duration)| Visit { position, service_duration }).collect();
+    let visits =
+        visits.map(|(&position, &service_duration)| Visit { service_duration, ..Visit::at(position) }).collect();
     let stop = if has_stops { 0.5 } else { 0.0 };
-    let vehicle_type = VehicleType { speed: 2.0, leg_stop_duration: stop, ..VehicleType::unlimited(num_routes) };
+    let vehicle_type = VehicleType {
+        speed: 2.0,
+        leg_stop_duration: stop,
+        takeoff_duration: 2.0 * stop,
+        way_home: has_stops.then_some(WayHome { speed: 3.0, fixed_duration: 0.8 }),
+        ..VehicleType::unlimited(num_routes)
+    };
     network_of(&Problem::new(Depot { position: farm.depot }, visits, vehicle_type).unwrap())
 }
 
