@@ -18,5 +18,5 @@ def test_two_routes_that_share_a_square_and_cross() -> None:
 
 def test_an_unknown_pond_is_a_clean_error() -> None:
     problem = Problem([0, 0], np.ones((1, 2)), 1)
-    with pytest.raises(InvalidInput, match="there is no visit 1"):
+    with pytest.raises(InvalidInput, match="there is no pond 1"):
         separation(problem, [[0], [1]])

@@ -3,7 +3,18 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from pondhop._core import LocalFrame, Plan, Problem, Separation, __version__, evaluate, lower_bound, separation
+from pondhop._core import (
+    Energy,
+    LocalFrame,
+    Plan,
+    Problem,
+    Separation,
+    Violation,
+    __version__,
+    evaluate,
+    lower_bound,
+    separation,
+)
 from pondhop.errors import Fault, InvalidInput
 
 if TYPE_CHECKING:
@@ -42,6 +53,7 @@ _MODULE_OF = {
 
 __all__ = [
     "PLANNERS",
+    "Energy",
     "Farm",
     "FarmPlan",
     "Fault",
@@ -54,6 +66,7 @@ __all__ = [
     "ResearchFarm",
     "Separation",
     "Solution",
+    "Violation",
     "__version__",
     "evaluate",
     "generate",

@@ -40,3 +40,7 @@ class InvalidInput(ValueError):  # noqa: N818 - the words of the field, as in th
     def __init__(self, faults: Iterable[Fault | tuple[str, str, str]]) -> None:
         self.faults = tuple(fault if isinstance(fault, Fault) else Fault(*fault) for fault in faults)
         super().__init__("\n".join(map(str, self.faults)))
+
+    def __reduce__(self) -> tuple[type[InvalidInput], tuple[tuple[Fault, ...]]]:
+        """Pickle the faults, not their text: an error may come from a worker process."""
+        return type(self), (self.faults,)

@@ -406,7 +406,7 @@ def _start_faults(problem: Problem, start: Routes) -> list[Fault]:
     if visits == list(range(problem.num_ponds)) and len(plan.routes) <= problem.num_drones:
         return []
     return [
-        Fault("start", violation, "give a plan that only time or length limits may break")
+        Fault("start", str(violation), "give a plan that only time or length limits may break")
         for violation in plan.violations
     ]
 

@@ -37,6 +37,20 @@ impl Faults {
         self.0.push(Fault { path: path.into(), message: message.into(), action: action.to_owned() });
     }
 
+    /// Passes on what `result` holds if nothing was wrong, here or there.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] with every fault noted so far, and then those of `result`.
+    pub fn with<T>(mut self, result: Result<T, InvalidInput>) -> Result<T, InvalidInput> {
+        match result {
+            Ok(value) => self.into_result(value),
+            Err(error) => {
+                self.0.extend(error.faults);
+                Err(InvalidInput { faults: self.0 })
+            }
+        }
+    }
+
     /// Passes `value` on if nothing was wrong.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use crate::plan::Plan;
 use crate::problem::Problem;
 use pyo3::prelude::*;
 
-/// Recompute everything about a plan from bare routes: lengths, schedule, violations.
+/// Recompute everything about a plan from bare routes: lengths, schedule, energy, violations.
 ///
 /// Parameters
 /// ----------
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// Plan
-///     With a sentence in `violations` for every rule the routes break.
+///     With a `Violation` for every rule the routes break.
 ///
 /// Raises
 /// ------
@@ -27,6 +27,6 @@ use pyo3::prelude::*;
 #[allow(clippy::needless_pass_by_value)]
 pub fn evaluate(py: Python<'_>, problem: &Problem, routes: Vec<Vec<usize>>) -> PyResult<Plan> {
     py.detach(|| pondhop_core::evaluate::evaluate(&problem.inner, &routes))
-        .map(|inner| Plan { inner })
+        .map(|inner| Plan::new(&problem.inner, inner))
         .map_err(|error| to_python(&error))
 }

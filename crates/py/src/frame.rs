@@ -1,7 +1,10 @@
 //! `pondhop_core::frame`.
 
-use crate::problem::points;
-use numpy::{PyArray2, PyReadonlyArray2};
+use crate::arguments::points;
+use crate::error::to_python;
+use crate::values::table;
+use numpy::PyArray2;
+use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
 use pyo3::prelude::*;
 
@@ -31,29 +34,34 @@ impl LocalFrame {
         self.inner.origin_deg()
     }
 
-    /// Metres east and north, shape (n, 2), of longitudes and latitudes in degrees, shape (n, 2).
-    fn to_local<'py>(
-        &self,
-        py: Python<'py>,
-        lonlat_deg: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let local = |place: &Point| {
-            let point = self.inner.to_local(place.x, place.y);
-            vec![point.x, point.y]
-        };
-        Ok(PyArray2::from_vec2(py, &points(&lonlat_deg)?.iter().map(local).collect::<Vec<_>>())?)
+    /// Metres east and north, shape (n, 2), of longitudes and latitudes in degrees, shape (n, 2), of any real type.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput
+    ///     If the array has another shape or type.
+    fn to_local<'py>(&self, py: Python<'py>, lonlat_deg: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let places = places("lonlat_deg", lonlat_deg)?;
+        let local = places.iter().map(|place| self.inner.to_local(place.x, place.y));
+        table(py, local.flat_map(|point| [point.x, point.y]), 2)
     }
 
-    /// Longitudes and latitudes in degrees, shape (n, 2), of metres east and north, shape (n, 2).
-    fn to_geographic<'py>(
-        &self,
-        py: Python<'py>,
-        local_m: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let geographic = |point: &Point| {
-            let (longitude_deg, latitude_deg) = self.inner.to_geographic(*point);
-            vec![longitude_deg, latitude_deg]
-        };
-        Ok(PyArray2::from_vec2(py, &points(&local_m)?.iter().map(geographic).collect::<Vec<_>>())?)
+    /// Longitudes and latitudes in degrees, shape (n, 2), of metres east and north, shape (n, 2), of any real type.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput
+    ///     If the array has another shape or type.
+    fn to_geographic<'py>(&self, py: Python<'py>, local_m: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let places = places("local_m", local_m)?;
+        let geographic = places.iter().map(|&place| self.inner.to_geographic(place));
+        table(py, geographic.flat_map(|(longitude_deg, latitude_deg)| [longitude_deg, latitude_deg]), 2)
     }
+}
+
+fn places(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Point>> {
+    let mut faults = Faults::default();
+    let places = points(&mut faults, name, value)?;
+    faults.into_result(()).map_err(|error| to_python(&error))?;
+    Ok(places.unwrap_or_default())
 }

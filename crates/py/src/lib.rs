@@ -3,6 +3,7 @@
 //! It converts, releases the GIL and maps errors; it holds no algorithm. Its files are named after the core modules they
 //! wrap. Every index is checked at this border, because a Rust panic is no `Exception` in Python.
 
+mod arguments;
 mod attention;
 mod bound;
 mod error;
@@ -15,6 +16,8 @@ mod problem;
 mod search;
 mod separation;
 mod territory;
+mod travel;
+mod values;
 
 use pyo3::prelude::*;
 
@@ -34,15 +37,17 @@ mod _core {
     #[pymodule_export]
     use crate::hpp::{hpp, hpp_clusters};
     #[pymodule_export]
-    use crate::plan::Plan;
+    use crate::plan::{Plan, Violation};
     #[pymodule_export]
-    use crate::problem::Problem;
+    use crate::problem::{Energy, Problem};
     #[pymodule_export]
     use crate::search::search;
     #[pymodule_export]
     use crate::separation::{Separation, separation};
     #[pymodule_export]
     use crate::territory::territory;
+    #[pymodule_export]
+    use crate::travel::{leg_durations, leg_lengths};
 
     use super::*;
 

@@ -121,7 +121,9 @@ const MAX_THREADS: usize = 1024;
 
 fn check_start(problem: &Problem, routes: &[Vec<usize>]) -> PyResult<()> {
     let plan = pondhop_core::evaluate::evaluate(&problem.inner, routes).map_err(|error| to_python(&error))?;
-    let is_limit = |violation: &&Violation| matches!(violation, Violation::TooLong { .. } | Violation::TooSlow { .. });
+    let is_limit = |violation: &&Violation| {
+        matches!(violation, Violation::TooLong { .. } | Violation::TooSlow { .. } | Violation::TooMuchEnergy { .. })
+    };
     match plan.violations.iter().find(|violation| !is_limit(violation)) {
         Some(violation) => Err(PyValueError::new_err(format!("start: {violation}"))),
         None => Ok(()),

@@ -2,9 +2,19 @@
 
 use crate::error::to_python;
 use crate::problem::Problem;
+use crate::values::hash_of;
 use pyo3::prelude::*;
 
 /// How well a plan keeps the drones apart: immutable.
+///
+/// Parameters
+/// ----------
+/// overlap
+///     Area inside the convex hulls of the ponds of at least two routes, as a share of the area of the hull of all ponds.
+/// num_crossings
+///     Pairs of crossing legs of different routes, legs from and to the depot left aside.
+/// num_depot_leg_crossings
+///     Pairs of crossing legs of different routes, of which at least one starts or ends at the depot.
 #[pyclass(frozen, eq, module = "pondhop")]
 #[derive(PartialEq)]
 pub struct Separation {
@@ -13,6 +23,11 @@ pub struct Separation {
 
 #[pymethods]
 impl Separation {
+    #[new]
+    fn new(overlap: f64, num_crossings: usize, num_depot_leg_crossings: usize) -> Self {
+        Self { inner: pondhop_core::separation::Separation { overlap, num_crossings, num_depot_leg_crossings } }
+    }
+
     /// Area inside the convex hulls of the ponds of at least two routes, as a share of the area of the hull of all ponds.
     #[getter]
     fn overlap(&self) -> f64 {
@@ -31,9 +46,18 @@ impl Separation {
         self.inner.num_depot_leg_crossings
     }
 
+    fn __getnewargs__(&self) -> (f64, usize, usize) {
+        (self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings)
+    }
+
+    fn __hash__(&self) -> u64 {
+        let (overlap, num_crossings, num_depot_leg_crossings) = self.__getnewargs__();
+        hash_of([overlap, num_crossings as f64, num_depot_leg_crossings as f64])
+    }
+
     fn __repr__(&self) -> String {
         format!(
-            "Separation(overlap={}, num_crossings={}, num_depot_leg_crossings={})",
+            "Separation(overlap={:?}, num_crossings={}, num_depot_leg_crossings={})",
             self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings
         )
     }

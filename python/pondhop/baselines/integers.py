@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pondhop._core import Problem
+from pondhop._core import Problem, leg_durations, leg_lengths
 from pondhop.errors import Fault, InvalidInput
 
 MAX_PONDS = 3000
@@ -77,12 +77,10 @@ def legs_of(problem: Problem) -> Legs:
     if problem.num_ponds > MAX_PONDS:
         message = f"a matrix of the legs between {problem.num_ponds} ponds takes too much memory"
         raise InvalidInput([Fault("planner", message, f"give at most {MAX_PONDS} ponds, or use search or territory")])
-    places = np.vstack([problem.depot, problem.ponds])
-    lengths_m = np.hypot(*(places[:, np.newaxis] - places).transpose(2, 0, 1))
-    costs_s = np.where(lengths_m > 0.0, lengths_m / problem.speed_m_s + problem.leg_stop_s, 0.0)
+    costs_s = leg_durations(problem)
     costs_s[:, 1:] += problem.service_durations_s
     np.fill_diagonal(costs_s, 0.0)
-    return Legs(costs_s, lengths_m)
+    return Legs(costs_s, leg_lengths(problem))
 
 
 def fine(legs: NDArray[np.float64], limit: float) -> IntegerMatrix:

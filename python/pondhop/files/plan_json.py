@@ -13,9 +13,7 @@ from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from pondhop._core import Problem, Separation, __version__, evaluate, separation
+from pondhop._core import Separation, __version__, evaluate, separation
 from pondhop.documents.atomic import write_all
 from pondhop.documents.schemas import read_json
 from pondhop.errors import Fault, InvalidInput
@@ -121,7 +119,7 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
             "is_feasible": plan.is_feasible,
         },
         "routes": [_route_object(farm_plan, index) for index in range(len(plan.routes))],
-        "violations": plan.violations,
+        "violations": [str(violation) for violation in plan.violations],
         "unserved": [{"pond": pond, "id": farm.ponds[pond].id} for pond in plan.unserved],
         "notes": list(farm_plan.notes),
     }
@@ -132,9 +130,9 @@ def _separation_object(measured: Separation) -> dict[str, Any]:
 
 
 def _route_object(farm_plan: FarmPlan, index: int) -> dict[str, Any]:
-    problem, plan = farm_plan.solution.problem, farm_plan.solution.plan
+    plan = farm_plan.solution.plan
     route = plan.routes[index]
-    legs = _leg_lengths_m(problem, route)
+    leg_lengths_m = plan.leg_lengths_m[index].tolist()
     stops = []
     for order, pond in enumerate(route):
         longitude, latitude = farm_plan.farm.ponds[pond].sampling_point
@@ -144,7 +142,7 @@ def _route_object(farm_plan: FarmPlan, index: int) -> dict[str, Any]:
                 "id": farm_plan.farm.ponds[pond].id,
                 "lon_deg": longitude,
                 "lat_deg": latitude,
-                "leg_length_m": legs[order],
+                "leg_length_m": leg_lengths_m[order],
                 "arrival_s": float(plan.arrivals_s[index][order]),
                 "departure_s": float(plan.departures_s[index][order]),
             }
@@ -154,14 +152,8 @@ def _route_object(farm_plan: FarmPlan, index: int) -> dict[str, Any]:
         "length_m": float(plan.route_lengths[index]),
         "duration_s": float(plan.route_durations_s[index]),
         "stops": stops,
-        "return_leg_length_m": legs[-1],
+        "return_leg_length_m": leg_lengths_m[-1],
     }
-
-
-def _leg_lengths_m(problem: Problem, route: list[int]) -> list[float]:
-    """Lengths of the legs from depot to depot, one more than there are stops."""
-    path = np.vstack([problem.depot, problem.ponds[route], problem.depot])
-    return [float(length) for length in np.hypot(*np.diff(path, axis=0).T)]
 
 
 def _farm(content: Mapping[str, Any]) -> Farm:

@@ -75,7 +75,7 @@ def judge(index: int, problem: Problem, routes: Sequence[Sequence[int]]) -> Judg
         overlap=separation.overlap,
         num_crossings=separation.num_crossings,
         is_feasible=plan.is_feasible,
-        violations=plan.violations,
+        violations=[str(violation) for violation in plan.violations],
     )
 
 

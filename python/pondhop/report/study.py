@@ -35,7 +35,7 @@ class SearchWithin:
     def __call__(self, problem: Problem, seed: int, time_limit_s: float | None) -> list[list[int]]:
         """Plan; where no plan is found that is as balanced, the longest route is as short as it gets."""
         # On a research farm, where drones fly at speed 1 and never stop, a second is a length unit.
-        limited = Problem(problem.depot, problem.ponds, problem.num_drones, max_duration_s=self.max_route_length)
+        limited = problem.replace(max_duration_s=self.max_route_length)
         routes, *_ = _core.search(limited, seed=seed, time_limit_s=time_limit_s, objective="total")
         return routes
 

@@ -1,0 +1,148 @@
+//! What Python passes in: numbers and arrays of any real type, with faults in the words of the Python API.
+
+use numpy::PyReadonlyArrayDyn;
+use pondhop_core::error::Faults;
+use pondhop_core::geometry::Point;
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBool;
+
+/// A number of any real type, or what is shown of something else. A whole number beyond all floats is infinite.
+pub struct Real(Result<f64, String>);
+
+impl Real {
+    pub const fn of(number: f64) -> Self {
+        Self(Ok(number))
+    }
+
+    /// The number; `otherwise`, with a fault, if it is none.
+    pub fn number(self, faults: &mut Faults, name: &str, otherwise: f64) -> f64 {
+        self.0.unwrap_or_else(|shown| {
+            faults.add(name, format!("it is {shown}"), "give a real number");
+            otherwise
+        })
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Real {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let py = value.py();
+        match value.extract::<f64>() {
+            Ok(number) => Ok(Self(Ok(number))),
+            Err(error) if error.is_instance_of::<PyOverflowError>(py) => {
+                Ok(Self(Ok(if value.lt(0)? { f64::NEG_INFINITY } else { f64::INFINITY })))
+            }
+            Err(error) if error.is_instance_of::<PyTypeError>(py) => Ok(Self(Err(shortened(&value)))),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// A whole number of drones. The fault that there is none is left to the core.
+pub fn num_drones(faults: &mut Faults, value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let action = "give a whole number of drones, at least one";
+    if value.is_instance_of::<PyBool>() {
+        faults.add("num_drones", format!("it is {}", shortened(value)), action);
+        return Ok(1);
+    }
+    match value.extract::<usize>() {
+        Ok(number) => Ok(number),
+        Err(error)
+            if error.is_instance_of::<PyTypeError>(value.py())
+                || error.is_instance_of::<PyOverflowError>(value.py()) =>
+        {
+            faults.add("num_drones", format!("it is {}", shortened(value)), action);
+            Ok(1)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// Positions of shape (n, 2); none if the array is at fault.
+pub fn points(faults: &mut Faults, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<Point>>> {
+    let Some(array) = real_array(faults, name, value)? else { return Ok(None) };
+    let view = array.as_array();
+    match *view.shape() {
+        // What Python makes of an empty list.
+        [0] | [0, 2] => return Ok(Some(Vec::new())),
+        [_, 2] => {}
+        _ => {
+            add_shape_fault(faults, name, view.shape(), "give positions as an array of shape (n, 2)");
+            return Ok(None);
+        }
+    }
+    Ok(Some(view.rows().into_iter().map(|row| Point::new(row[0], row[1])).collect()))
+}
+
+/// A position of shape (2,); none if the array is at fault.
+pub fn point(faults: &mut Faults, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Point>> {
+    let Some(array) = real_array(faults, name, value)? else { return Ok(None) };
+    let view = array.as_array();
+    if *view.shape() == [2] {
+        return Ok(Some(Point::new(view[0], view[1])));
+    }
+    add_shape_fault(faults, name, view.shape(), "give the two coordinates of the position");
+    Ok(None)
+}
+
+/// One number for each pond, shape (n,); empty if not given or at fault. How many are wanted is not asked where the ponds
+/// themselves are at fault.
+pub fn values(
+    faults: &mut Faults,
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    num_ponds: Option<usize>,
+) -> PyResult<Vec<f64>> {
+    let Some(value) = value else { return Ok(Vec::new()) };
+    let Some(array) = real_array(faults, name, value)? else { return Ok(Vec::new()) };
+    let view = array.as_array();
+    match num_ponds {
+        Some(num_ponds) if *view.shape() != [num_ponds] => {
+            add_shape_fault(faults, name, view.shape(), &format!("give a value for each of the {num_ponds} ponds"));
+            Ok(Vec::new())
+        }
+        Some(_) => Ok(view.iter().copied().collect()),
+        None => Ok(Vec::new()),
+    }
+}
+
+fn real_array<'py>(
+    faults: &mut Faults,
+    name: &str,
+    value: &Bound<'py, PyAny>,
+) -> PyResult<Option<PyReadonlyArrayDyn<'py, f64>>> {
+    let py = value.py();
+    let array = match py.import("numpy")?.call_method1("asarray", (value,)) {
+        Ok(array) => array,
+        // Lists of lists of different lengths, or what numpy cannot read.
+        Err(error) if error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyTypeError>(py) => {
+            faults.add(name, "this is no array of numbers", "give numbers, as many in each row");
+            return Ok(None);
+        }
+        Err(error) => return Err(error),
+    };
+    let number_type = array.getattr("dtype")?;
+    if !matches!(number_type.getattr("kind")?.extract::<char>()?, 'i' | 'u' | 'f') {
+        faults.add(name, format!("its values are of type {}", number_type.str()?), "give real numbers");
+        return Ok(None);
+    }
+    Ok(Some(array.call_method1("astype", ("float64",))?.extract()?))
+}
+
+fn add_shape_fault(faults: &mut Faults, name: &str, shape: &[usize], action: &str) {
+    let comma = if shape.len() == 1 { "," } else { "" };
+    let sizes = shape.iter().map(ToString::to_string).collect::<Vec<String>>().join(", ");
+    faults.add(name, format!("it has shape ({sizes}{comma})"), action);
+}
+
+/// What is shown of a value in a message.
+fn shortened(value: &Bound<'_, PyAny>) -> String {
+    const MAX_SHOWN: usize = 40;
+    // Numbers of more digits than Python converts have no representation.
+    let Ok(text) = value.repr() else { return "a number of very many digits".into() };
+    let text = text.to_string();
+    let shown: String = text.chars().take(MAX_SHOWN).collect();
+    if shown.len() < text.len() { format!("{shown}...") } else { shown }
+}

@@ -1,0 +1,25 @@
+//! What the classes of the binding have in common as values, and arrays of their numbers.
+
+use numpy::{PyArray2, PyArrayMethods, ToPyArray};
+use pyo3::prelude::*;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// A hash of numbers; the same for equal ones.
+pub fn hash_of(numbers: impl IntoIterator<Item = f64>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for number in numbers {
+        // 0.0 and -0.0 are equal.
+        (number + 0.0).to_bits().hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+/// An array of shape (rows, `num_columns`) of numbers row by row.
+pub fn table<'py>(
+    py: Python<'py>,
+    numbers: impl Iterator<Item = f64>,
+    num_columns: usize,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let numbers: Vec<f64> = numbers.collect();
+    numbers.to_pyarray(py).reshape([numbers.len() / num_columns, num_columns])
+}
