@@ -51,6 +51,9 @@ pub(crate) struct Network {
     /// What a route that visits it pays at least to reach each visit, or to come home from it; empty where that is the leg
     /// between the depot and the visit.
     least_ways: Vec<f64>,
+    /// Whether a route may cost less for one more visit: where drones come home more slowly than they fly, so that a visit on
+    /// the way home saves time.
+    pub may_visits_save: bool,
     /// Nodes from this on have legs of a price of their own: the copies of the depot, or none.
     first_priced: u32,
     /// Longest time a drone can be under way.
@@ -80,6 +83,7 @@ impl Network {
             services,
             depot_legs: Vec::new(),
             least_ways: Vec::new(),
+            may_visits_save: false,
             first_priced: u32::MAX,
             max_route_cost: vehicle_type.max_duration,
             stop: vehicle_type.leg_stop_duration,
@@ -100,12 +104,12 @@ impl Network {
         let depot = problem.depot().position;
         let lengths = problem.visits().iter().map(|visit| leg_length(depot, visit.position));
         self.depot_legs = lengths.clone().map(|length| mean_depot_leg(length, &vehicle_type)).collect();
-        // Where drones come home more slowly than they fly, a visit on the way may save time.
         let saved_per_length = vehicle_type
             .way_home
             .map_or(0.0, |way_home| f64::max(0.5 / way_home.speed - 0.5 / vehicle_type.speed, 0.0));
         self.least_ways =
             self.depot_legs.iter().zip(lengths).map(|(leg, length)| leg - saved_per_length * length).collect();
+        self.may_visits_save = saved_per_length > 0.0;
         self.first_priced = self.num_visits as u32;
     }
 

@@ -53,7 +53,7 @@ impl Recreate {
         self.order(network, removed, random);
         let mut longest = state.max_route_cost();
         let mut longest_end = longest_end(network, state);
-        for &(_, visit) in &self.keyed {
+        for (order, &(_, visit)) in self.keyed.iter().enumerate() {
             let blinks = Blinks { salt: random.bits(), route_limit: self.route_blink };
             let Some(place) = cheapest_place(network, state, visit, objective, airspace, &blinks, longest_end) else {
                 return false;
@@ -64,7 +64,8 @@ impl Recreate {
             airspace.assign(visit, route);
             longest = longest.max(state.route_costs[route as usize]);
             // Costs only grow from here on, so that a lower bound over the threshold decides.
-            if objective.max_weight * longest + objective.total_weight * state.total > threshold {
+            let is_bound = !network.may_visits_save || order + 1 == self.keyed.len();
+            if is_bound && objective.max_weight * longest + objective.total_weight * state.total > threshold {
                 return false;
             }
         }
@@ -226,7 +227,12 @@ impl Insertion {
                 other_leg = self.depot_leg;
             }
             let added = leg + other_leg - node.legs[side];
-            let overflow = lesser(greater(excess + added, 0.0), added);
+            let overflow = if IS_PRICED {
+                // A visit may save time here.
+                greater(excess + added, 0.0) - greater(excess, 0.0)
+            } else {
+                lesser(greater(excess + added, 0.0), added)
+            };
             offers.other_legs[side] = other_leg;
             offers.added[side] = added;
             offers.prices[side] = added + self.overflow_price * overflow;
