@@ -167,7 +167,14 @@ def _search(problem: Problem, effort: Effort) -> Planned:
 
 
 def _territory(problem: Problem, effort: Effort) -> Planned:
-    return Planned(*_core.territory(problem, seed=effort.seed, time_limit_s=effort.time_limit_s))
+    planned = _core.territory(
+        problem,
+        seed=effort.seed,
+        time_limit_s=effort.time_limit_s,
+        iterations=effort.iterations,
+        progress=effort.progress,
+    )
+    return Planned(*planned)
 
 
 def _auto(problem: Problem, effort: Effort) -> Planned:
