@@ -228,5 +228,10 @@ def search(
     progress: Callable[[float, int, float], object] | None = None,
 ) -> tuple[list[list[int]], float, int, bool]: ...
 def territory(
-    problem: Problem, *, seed: int = 1, time_limit_s: float | None = None
-) -> tuple[list[list[int]], float]: ...
+    problem: Problem,
+    *,
+    seed: int = 1,
+    time_limit_s: float | None = None,
+    iterations: int | None = None,
+    progress: Callable[[float, int, float], object] | None = None,
+) -> tuple[list[list[int]], float, bool]: ...

@@ -172,7 +172,14 @@ def _search(problem: Problem, options: Options) -> Planned:
 
 
 def _territory(problem: Problem, options: Options) -> Planned:
-    return Planned(*_core.territory(problem, seed=options.seed, time_limit_s=options.time_limit_s))
+    planned = _core.territory(
+        problem,
+        seed=options.seed,
+        time_limit_s=options.time_limit_s,
+        iterations=options.iterations,
+        progress=options.progress,
+    )
+    return Planned(*planned)
 
 
 def _auto(problem: Problem, options: Options) -> Planned:

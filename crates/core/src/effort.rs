@@ -1,14 +1,16 @@
-//! How much of the effort is used: iterations, time, or the wish to stop.
+//! How much of the effort is used: steps, time, or the wish to stop.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// What a search reports while it runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// Cost of the longest route of the best plan so far, in seconds (length units in research instances).
+    /// Cost of the longest route of the best plan so far, in seconds (length units in research instances); infinite while there
+    /// is no plan yet.
     pub max_route_cost: f64,
-    /// Steps so far, of the reporting thread.
+    /// Steps so far, of the thread that reported last.
     pub num_iterations: u64,
     /// Share of the effort used, 0 to 1.
     pub share: f64,
@@ -17,7 +19,8 @@ pub struct Progress {
 /// The share of the time limit used so far; 1 or more ends the search. The core has no clock of its own.
 pub type Clock<'a> = &'a (dyn Fn() -> f64 + Sync);
 
-/// Told now and then how far the search is; `Break` ends it with the best plan so far.
+/// Told now and then how far the search is, also by what makes no steps: cutting, smoothing, evening out. `Break` ends it with
+/// the best plan so far. It is asked often, up to a million times a second.
 pub type Watch<'a> = &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync);
 
 /// The effort of one search, shared by its threads.
@@ -25,12 +28,15 @@ pub(crate) struct Budget<'a> {
     max_iterations: Option<u64>,
     clock: Option<Clock<'a>>,
     watch: Option<Watch<'a>>,
+    /// What the watch was told last.
+    latest: Mutex<Progress>,
     is_stopped: AtomicBool,
 }
 
 impl<'a> Budget<'a> {
     pub fn new(max_iterations: Option<u64>, clock: Option<Clock<'a>>, watch: Option<Watch<'a>>) -> Self {
-        Self { max_iterations, clock, watch, is_stopped: AtomicBool::new(false) }
+        let latest = Mutex::new(Progress { max_route_cost: f64::INFINITY, num_iterations: 0, share: 0.0 });
+        Self { max_iterations, clock, watch, latest, is_stopped: AtomicBool::new(false) }
     }
 
     /// Share of the effort used by a thread that made `num_iterations` steps.
@@ -43,9 +49,16 @@ impl<'a> Budget<'a> {
         of_iterations.max(of_time)
     }
 
-    /// Whether the time is over; iterations do not count, so that what is not an iteration stays reproducible.
+    /// Whether the time is over, or the watch ends the search; iterations do not count, so that what is not an iteration stays
+    /// reproducible. Everything that repeats until nothing is gained, or takes more than a moment, asks this now and then.
     pub fn is_time_over(&self) -> bool {
-        self.is_stopped.load(Ordering::Relaxed) || self.clock.is_some_and(|clock| clock() >= 1.0)
+        if self.is_stopped.load(Ordering::Relaxed) || self.clock.is_some_and(|clock| clock() >= 1.0) {
+            return true;
+        }
+        let Some(watch) = self.watch else { return false };
+        let latest = *self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_stopped = watch(&latest).is_break();
+        self.is_stopped.fetch_or(is_stopped, Ordering::Relaxed) || is_stopped
     }
 
     /// Share of the effort that work worth `num_iterations` steps used, if it began when `begin` of the effort was used.
@@ -55,8 +68,10 @@ impl<'a> Budget<'a> {
         of_iterations.max(of_time)
     }
 
-    fn report(&self, progress: &Progress) {
-        if self.watch.is_some_and(|watch| watch(progress).is_break()) {
+    fn report(&self, progress: Progress) {
+        let Some(watch) = self.watch else { return };
+        *self.latest.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+        if watch(&progress).is_break() {
             self.is_stopped.store(true, Ordering::Relaxed);
         }
     }
@@ -94,7 +109,7 @@ impl<'a> Effort<'a> {
         self.num_iterations += num_steps;
         if self.num_iterations.is_multiple_of(STEPS_PER_REPORT) {
             let max_route_cost = max_route_cost.min(self.longest_elsewhere);
-            self.budget.report(&Progress { max_route_cost, num_iterations: self.num_iterations, share: self.share() });
+            self.budget.report(Progress { max_route_cost, num_iterations: self.num_iterations, share: self.share() });
         }
     }
 }

@@ -207,13 +207,20 @@ fn progress_tells_of_the_best_plan_so_far() {
 }
 
 #[test]
-fn a_watch_ends_the_search() {
-    let watch = |progress: &Progress| {
-        assert!(progress.num_iterations > 0 && progress.max_route_cost > 0.0);
-        ControlFlow::Break(())
-    };
-    let outcome = solve(&farm(80, 5), &Options { watch: Some(&watch), num_threads: 2, ..Options::default() });
-    assert!(outcome.num_iterations > 0);
+fn a_watch_ends_the_search_at_any_look() {
+    let problem = farm(80, 5);
+    for (num_looks, num_threads) in (0..200).chain([300, 400]).zip([1, 2].into_iter().cycle()) {
+        let looks = AtomicU64::new(0);
+        let watch = |progress: &Progress| {
+            assert!(progress.max_route_cost > 0.0 && progress.share < 1.0);
+            let is_over = looks.fetch_add(1, Ordering::Relaxed) >= num_looks;
+            if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let plan = plan(&problem, &Options { watch: Some(&watch), num_threads, ..Options::default() });
+        assert!(plan.is_feasible());
+        // Threads may look once more each before they see that another has ended the search.
+        assert!(looks.into_inner() <= num_looks + 2 * num_threads as u64);
+    }
 }
 
 #[test]

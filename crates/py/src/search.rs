@@ -83,7 +83,7 @@ pub fn search(
     if let Some(routes) = &start {
         check_start(problem, routes)?;
     }
-    let watcher = Watcher { progress, last: Mutex::new(begin), outcome: Mutex::new(Ok(false)) };
+    let watcher = Watcher::new(progress, begin);
     let clock = move || time_limit_s.map_or(0.0, |limit| begin.elapsed().as_secs_f64() / limit);
     let watch = |report: &Progress| watcher.look(report);
     let options = Options {
@@ -97,15 +97,14 @@ pub fn search(
         start: start.as_deref(),
     };
     let (outcome, elapsed) = py.detach(|| (solve(&problem.inner, &options), begin.elapsed()));
-    let is_interrupted = watcher.outcome.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+    let is_interrupted = watcher.into_outcome()?;
     Ok((outcome.routes, elapsed.as_secs_f64(), outcome.num_iterations, is_interrupted))
 }
 
 fn check_effort(time_limit_s: Option<f64>, iterations: Option<u64>, threads: usize, slack: f64) -> PyResult<()> {
+    check_limits(time_limit_s, iterations)?;
     let complaint = if time_limit_s.is_none() && iterations.is_none() {
         "give time_limit_s or iterations"
-    } else if time_limit_s.is_some_and(|limit| limit.is_nan() || limit <= 0.0) || iterations == Some(0) {
-        "time_limit_s and iterations are above 0"
     } else if !(1..=MAX_THREADS).contains(&threads) {
         "threads is 1 to 1024"
     } else if !(slack.is_finite() && slack >= 0.0) {
@@ -114,6 +113,13 @@ fn check_effort(time_limit_s: Option<f64>, iterations: Option<u64>, threads: usi
         return Ok(());
     };
     Err(PyValueError::new_err(complaint))
+}
+
+pub fn check_limits(time_limit_s: Option<f64>, iterations: Option<u64>) -> PyResult<()> {
+    if time_limit_s.is_some_and(|limit| limit.is_nan() || limit <= 0.0) || iterations == Some(0) {
+        return Err(PyValueError::new_err("time_limit_s and iterations are above 0"));
+    }
+    Ok(())
 }
 
 /// Beyond this a mistyped number would exhaust the machine.
@@ -130,8 +136,8 @@ fn check_start(problem: &Problem, routes: &[Vec<usize>]) -> PyResult<()> {
     }
 }
 
-/// Looks at Python now and then while the search runs without the GIL.
-struct Watcher {
+/// Looks at Python now and then while a planner runs without the GIL.
+pub struct Watcher {
     progress: Option<Py<PyAny>>,
     last: Mutex<Instant>,
     /// Whether Ctrl-C ended the search, or what the callback raised.
@@ -139,7 +145,16 @@ struct Watcher {
 }
 
 impl Watcher {
-    fn look(&self, report: &Progress) -> ControlFlow<()> {
+    pub fn new(progress: Option<Py<PyAny>>, begin: Instant) -> Self {
+        Self { progress, last: Mutex::new(begin), outcome: Mutex::new(Ok(false)) }
+    }
+
+    /// Whether Ctrl-C ended the planner, or what the callback raised.
+    pub fn into_outcome(self) -> PyResult<bool> {
+        self.outcome.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub fn look(&self, report: &Progress) -> ControlFlow<()> {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         if last.elapsed() < REPORT_INTERVAL {
             return ControlFlow::Continue(());
@@ -158,7 +173,10 @@ impl Watcher {
     }
 
     fn call_back(&self, py: Python<'_>, report: &Progress) -> PyResult<()> {
-        let Some(progress) = &self.progress else { return Ok(()) };
+        // Before the first plan there is nothing to tell.
+        let Some(progress) = self.progress.as_ref().filter(|_| report.max_route_cost.is_finite()) else {
+            return Ok(());
+        };
         progress.call1(py, (report.max_route_cost, report.num_iterations, report.share)).map(|_| ())
     }
 }

@@ -1,6 +1,9 @@
 //! `pondhop_core::territory`.
 
 use crate::problem::Problem;
+use crate::search::{Watcher, check_limits};
+use pondhop_core::effort::Progress;
+use pondhop_core::territory::{Options, plan};
 use pyo3::prelude::*;
 use std::time::Instant;
 
@@ -12,27 +15,47 @@ use std::time::Instant;
 ///     What is to be planned.
 /// seed
 ///     Of all random choices. Without a time limit, the same seed gives the same routes.
-/// time_limit_s
-///     Wall time in seconds, above 0; None for a fixed effort per pond: about 20 ms at 700 ponds.
+/// time_limit_s, iterations
+///     Wall time in seconds, and steps, above 0; the planner ends with the first that is used up. Without both a fixed
+///     number of steps per pond: about 20 ms at 700 ponds.
+/// progress
+///     Called about ten times a second, as by `search`.
 ///
 /// Returns
 /// -------
 /// routes : list of list of int
 ///     Pond indices per route in flying order, the depot implied at both ends: at most one route per drone, every pond
-///     once. Where ponds share a place, hulls may share that place.
+///     once. Ponds in one place are on one route.
 /// elapsed_s : float
 ///     Wall time in seconds from the problem's coordinates to finished routes, everything included.
+/// is_interrupted : bool
+///     Whether Ctrl-C ended the planner; the routes are the best so far.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If an option has no meaning.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=1, time_limit_s=None))]
-pub fn territory(py: Python<'_>, problem: &Problem, seed: u64, time_limit_s: Option<f64>) -> (Vec<Vec<usize>>, f64) {
-    py.detach(|| {
-        let start = Instant::now();
-        let share = |limit_s: f64| move || start.elapsed().as_secs_f64() / limit_s;
-        let clock = time_limit_s.map(share);
-        let routes = match &clock {
-            Some(clock) => pondhop_core::territory::plan(&problem.inner, seed, Some(clock)),
-            None => pondhop_core::territory::plan(&problem.inner, seed, None),
-        };
-        (routes, start.elapsed().as_secs_f64())
-    })
+#[pyo3(signature = (problem, *, seed=1, time_limit_s=None, iterations=None, progress=None))]
+pub fn territory(
+    py: Python<'_>,
+    problem: &Problem,
+    seed: u64,
+    time_limit_s: Option<f64>,
+    iterations: Option<u64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Vec<Vec<usize>>, f64, bool)> {
+    let begin = Instant::now();
+    check_limits(time_limit_s, iterations)?;
+    let watcher = Watcher::new(progress, begin);
+    let clock = move || time_limit_s.map_or(0.0, |limit| begin.elapsed().as_secs_f64() / limit);
+    let watch = |report: &Progress| watcher.look(report);
+    let options = Options {
+        seed,
+        max_iterations: iterations,
+        clock: time_limit_s.is_some().then_some(&clock),
+        watch: Some(&watch),
+    };
+    let (routes, elapsed) = py.detach(|| (plan(&problem.inner, &options), begin.elapsed()));
+    Ok((routes, elapsed.as_secs_f64(), watcher.into_outcome()?))
 }

@@ -12,7 +12,7 @@
 mod cuts;
 mod hulls;
 
-use crate::effort::{Budget, Clock, Effort};
+use crate::effort::{Budget, Clock, Effort, Watch};
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::search::{
@@ -42,18 +42,36 @@ const MAX_END: f64 = 0.9;
 const MAX_HEAT: (f64, f64) = (1e-3, 1e-6);
 const TOTAL_HEAT: (f64, f64) = (1e-3, 3e-6);
 
+/// How long to plan. Without an iteration limit and a clock the effort is a fixed number of steps per visit.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// Same seed and iterations, and no clock: same routes.
+    pub seed: u64,
+    /// Steps.
+    pub max_iterations: Option<u64>,
+    /// Share of the time limit used so far.
+    pub clock: Option<Clock<'a>>,
+    /// Told how far the planner is; may end it with the best plan so far.
+    pub watch: Option<Watch<'a>>,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { seed: 1, max_iterations: None, clock: None, watch: None }
+    }
+}
+
 /// Plans routes for `problem` whose hulls do not overlap: visit indices in flying order, every visit once, at most one route
 /// per drone, none empty. Where visits share a place, hulls may share that place.
-///
-/// `clock` tells the share of the time limit used so far; without one the effort is a fixed number of steps per visit, and the
-/// same `seed` gives the same routes.
 #[must_use]
-pub fn plan(problem: &Problem, seed: u64, clock: Option<Clock<'_>>) -> Vec<Vec<usize>> {
+pub fn plan(problem: &Problem, options: &Options<'_>) -> Vec<Vec<usize>> {
+    let Options { seed, max_iterations, clock, watch } = *options;
     let mut network = Network::new(problem);
-    network.find_neighbours();
+    let default_iterations = clock.is_none().then_some(STEPS_PER_VISIT * network.num_visits as u64);
+    let budget = Budget::new(max_iterations.or(default_iterations), clock, watch);
+    let neighbours = network.find_neighbours(&Budget::new(None, None, None)).unwrap_or_default();
+    network.set_neighbours(neighbours);
     let network = &network;
-    let max_iterations = clock.is_none().then_some(STEPS_PER_VISIT * network.num_visits as u64);
-    let budget = Budget::new(max_iterations, clock, None);
     let mut random = Random::new(seed);
     let tours = best_tours(network, &budget, &mut random);
     let state = State::new(network, &tours);
@@ -195,7 +213,7 @@ mod tests {
             // An effort that leaves nothing to chance on so few ponds: a clock that runs by calls.
             let calls = std::sync::atomic::AtomicU32::new(0);
             let clock = || f64::from(calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) / 5000.0;
-            let found = longest(&problem, &plan(&problem, 1, Some(&clock)));
+            let found = longest(&problem, &plan(&problem, &Options { clock: Some(&clock), ..Options::default() }));
             let best = best_by_force(&problem, 2);
             assert!(found >= best - 1e-12, "{found} beats {best}, so hulls must touch");
             assert!(found <= best * 1.01, "{found} instead of {best}");
@@ -207,34 +225,34 @@ mod tests {
         for (num_ponds, num_routes, seed) in [(50, 5, 1), (100, 3, 2), (120, 12, 3), (300, 5, 4)] {
             let farm = generate(num_ponds, Variant::Authors, seed).unwrap();
             let problem = Problem::research(farm.depot, &farm.ponds, num_routes).unwrap();
-            let routes = plan(&problem, 1, None);
+            let routes = plan(&problem, &Options::default());
             longest(&problem, &routes);
             assert!(routes.len() <= num_routes);
             assert_apart(&problem, &routes);
-            assert_eq!(routes, plan(&problem, 1, None));
+            assert_eq!(routes, plan(&problem, &Options::default()));
         }
     }
 
     #[test]
     fn ponds_in_one_place() {
         let problem = Problem::research(Point::default(), &[Point::new(3.0, 4.0); 9], 4).unwrap();
-        assert_eq!(longest(&problem, &plan(&problem, 1, None)), 10.0);
+        assert_eq!(longest(&problem, &plan(&problem, &Options::default())), 10.0);
     }
 
     #[test]
     fn fewer_ponds_than_routes() {
         let ponds = [Point::new(1.0, 0.0), Point::new(0.0, 2.0)];
         let problem = Problem::research(Point::default(), &ponds, 5).unwrap();
-        assert_eq!(longest(&problem, &plan(&problem, 1, None)), 4.0);
+        assert_eq!(longest(&problem, &plan(&problem, &Options::default())), 4.0);
         let problem = Problem::research(Point::default(), &ponds[..1], 1).unwrap();
-        assert_eq!(plan(&problem, 1, None), [[0]]);
+        assert_eq!(plan(&problem, &Options::default()), [[0]]);
     }
 
     #[test]
     fn ponds_on_a_line_through_the_depot() {
         let ponds: Vec<Point> = (-20..=20).filter(|&x| x != 0).map(|x| Point::new(f64::from(x), 0.0)).collect();
         let problem = Problem::research(Point::default(), &ponds, 4).unwrap();
-        let routes = plan(&problem, 1, None);
+        let routes = plan(&problem, &Options::default());
         assert_eq!(longest(&problem, &routes), 40.0);
         let mut spans: Vec<(f64, f64)> = routes
             .iter()
@@ -251,7 +269,7 @@ mod tests {
     fn a_time_limit_long_over_still_gives_a_plan() {
         let farm = generate(200, Variant::Authors, 1).unwrap();
         let problem = Problem::research(farm.depot, &farm.ponds, 5).unwrap();
-        let routes = plan(&problem, 1, Some(&|| 2.0));
+        let routes = plan(&problem, &Options { clock: Some(&|| 2.0), ..Options::default() });
         longest(&problem, &routes);
         assert_apart(&problem, &routes);
     }
@@ -267,7 +285,7 @@ mod tests {
             places.sort_unstable();
             let ponds: Vec<Point> = places.iter().map(|&(x, y)| Point::new(x.into(), y.into())).collect();
             let problem = Problem::research(Point::new(depot.0.into(), depot.1.into()), &ponds, num_routes).unwrap();
-            let routes = plan(&problem, seed, None);
+            let routes = plan(&problem, &Options { seed, ..Options::default() });
             longest(&problem, &routes);
             prop_assert!(routes.len() <= num_routes && routes.iter().all(|route| !route.is_empty()));
             assert_apart(&problem, &routes);

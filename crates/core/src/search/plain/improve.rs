@@ -11,10 +11,13 @@ use crate::effort::Budget;
 const NUM_TRIED: usize = 10;
 /// Place of a visit that is not on this tour.
 const ELSEWHERE: u32 = u32::MAX;
-/// Visits looked at between two looks at the clock.
+/// Visits looked at, and moves made, between two looks at the clock.
 const VISITS_PER_LOOK: usize = 32;
-/// What a move must gain, relative to the leg it starts from: above rounding, so that moves cannot undo each other for ever.
-const MIN_GAIN: f64 = 1e-9;
+/// What a move must gain, relative to the sum of all legs that come and go. Rounding makes the difference of such sums wrong by
+/// three to five units in the last place of the sum, 1e-15 of it: what gains more makes the tour shorter in truth, so that no
+/// moves can undo each other, and the last one comes after finitely many. A tolerance that follows the short legs alone does not
+/// bound that: the error comes from the long ones.
+const MIN_GAIN: f64 = 1e-12;
 
 /// Room for the places of the nodes of one tour at a time: made once, because it is as large as the farm.
 pub(crate) struct Room {
@@ -81,11 +84,16 @@ fn improve_tour(network: &Network, budget: &Budget<'_>, order: &mut [u32], queue
     let (mut num_looked_at, mut has_moved) = (0usize, false);
     while let Some(visit) = tour.queue.pop() {
         tour.is_queued[visit as usize] = false;
-        while tour.two_opt(visit) || tour.or_opt(visit) {
+        let mut is_over = false;
+        loop {
+            num_looked_at += 1;
+            is_over |= num_looked_at.is_multiple_of(VISITS_PER_LOOK) && budget.is_time_over();
+            if is_over || !(tour.two_opt(visit) || tour.or_opt(visit)) {
+                break;
+            }
             has_moved = true;
         }
-        num_looked_at += 1;
-        if num_looked_at.is_multiple_of(VISITS_PER_LOOK) && budget.is_time_over() {
+        if is_over {
             break;
         }
     }
@@ -131,8 +139,8 @@ impl Tour<'_> {
                     continue;
                 }
                 let d = if forward { self.next(c) } else { self.previous(c) };
-                let gain = leg_ab + network.leg(c, d) - neighbour.leg - network.leg(b, d);
-                if gain > MIN_GAIN * leg_ab {
+                let (removed, added) = (leg_ab + network.leg(c, d), neighbour.leg + network.leg(b, d));
+                if removed - added > MIN_GAIN * (removed + added) {
                     if forward {
                         self.reverse(b, c)
                     } else {
@@ -160,10 +168,8 @@ impl Tour<'_> {
                     end = step(self, end);
                 }
                 let after = step(self, end);
-                let removed = leg_before + network.leg(end, after) - network.leg(before, after);
-                if removed <= MIN_GAIN * leg_before {
-                    continue;
-                }
+                let (opened, closing) = (leg_before + network.leg(end, after), network.leg(before, after));
+                let removed = opened - closing;
                 for neighbour in network.neighbours(a).iter().take(NUM_TRIED) {
                     if neighbour.leg >= removed {
                         break;
@@ -177,8 +183,9 @@ impl Tour<'_> {
                         if self.is_within(d, a, length, forward) {
                             continue;
                         }
-                        let added = neighbour.leg + network.leg(end, d) - network.leg(c, d);
-                        if removed - added > MIN_GAIN * leg_before {
+                        let (inserted, replaced) = (neighbour.leg + network.leg(end, d), network.leg(c, d));
+                        let gain = removed - (inserted - replaced);
+                        if gain > MIN_GAIN * (opened + closing + inserted + replaced) {
                             self.move_segment(a, end, length, forward, c, d);
                             self.push(&[before, after, a, end, c, d]);
                             return true;

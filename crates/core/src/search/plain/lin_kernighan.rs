@@ -27,9 +27,10 @@ const BREADTHS: [usize; MAX_CUTS - 1] = [5, 3, 1, 0];
 const NUM_TRIED: usize = 8;
 /// What it costs to make a route longer that is above the mean, beside the total.
 const PRICE: f64 = 0.3;
-/// What a move must gain, relative to the mean route: above rounding.
-const MIN_GAIN: f64 = 1e-9;
-/// Nodes looked at between two looks at the clock.
+/// What a move must gain, relative to the total times the number of visits: a multiple of the rounding of a sum of as many legs,
+/// so that what gains more makes the plan better in truth, and no moves can undo each other.
+const MIN_GAIN: f64 = 4.0 * f64::EPSILON;
+/// Nodes looked at, and moves made, between two looks at the clock.
 const NODES_PER_LOOK: usize = 16;
 
 /// A node on its route.
@@ -94,9 +95,15 @@ pub(super) fn shorten(
     let mut num_looked_at = 0_usize;
     while let Some(node) = plan.queue.pop() {
         plan.is_queued[node as usize] = false;
-        while plan.improve_from(node) {}
-        num_looked_at += 1;
-        if num_looked_at.is_multiple_of(NODES_PER_LOOK) && budget.is_time_over() {
+        let mut is_over = false;
+        loop {
+            num_looked_at += 1;
+            is_over |= num_looked_at.is_multiple_of(NODES_PER_LOOK) && budget.is_time_over();
+            if is_over || !plan.improve_from(node) {
+                break;
+            }
+        }
+        if is_over {
             break;
         }
     }
@@ -121,7 +128,7 @@ impl<'a> Routes<'a> {
             is_changed: vec![false; network.num_routes],
             target: mean,
             cap,
-            min_gain: MIN_GAIN * mean,
+            min_gain: MIN_GAIN * (network.num_visits + MAX_CUTS) as f64 * state.total,
             queue: Vec::with_capacity(network.points.len()),
             is_queued: vec![false; network.points.len()],
             change: Move::default(),

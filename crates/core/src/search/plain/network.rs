@@ -8,6 +8,7 @@
 //! priced at half of what it costs out and home: a route then costs the mean of both ways, and who turns every route to its
 //! cheaper way ([`crate::direction`]) gets no route that costs more than it did here.
 
+use crate::effort::Budget;
 use crate::geometry::Point;
 use crate::neighbours::KdTree;
 use crate::problem::{Problem, VehicleType};
@@ -16,6 +17,9 @@ use crate::travel::{LegKind, leg_duration, leg_length};
 /// Nearest neighbours kept per visit. The 8 lattice neighbours and most of the next ring; 24 did not shorten plans, and
 /// slowed the steps by a quarter.
 pub(crate) const NUM_NEIGHBOURS: usize = 16;
+
+/// Visits whose neighbours are found between two looks at the clock.
+const VISITS_PER_LOOK: usize = 128;
 
 /// A nearest neighbour of a visit.
 #[derive(Clone, Copy, Debug)]
@@ -60,8 +64,14 @@ pub(crate) struct Network {
     pub max_route_cost: f64,
     /// Fixed time per leg.
     pub stop: f64,
+    lists: NeighbourLists,
+}
+
+/// The nearest neighbours of all visits, as many for each.
+#[derive(Debug, Default)]
+pub(crate) struct NeighbourLists {
     neighbours: Vec<Neighbour>,
-    num_neighbours: usize,
+    list_size: usize,
 }
 
 impl Network {
@@ -87,8 +97,7 @@ impl Network {
             first_priced: u32::MAX,
             max_route_cost: vehicle_type.max_duration,
             stop: vehicle_type.leg_stop_duration,
-            neighbours: Vec::new(),
-            num_neighbours: 0,
+            lists: NeighbourLists::default(),
         };
         network.depot_legs = (0..num_visits)
             .map(|visit| network.leg_between(network.points[num_visits], network.points[visit]))
@@ -162,29 +171,38 @@ impl Network {
         self.depot_legs[first as usize] + legs + services + self.depot_legs[last as usize]
     }
 
-    /// The nearest neighbours of a visit, nearest first. Empty before [`Network::find_neighbours`].
+    /// The nearest neighbours of a visit, nearest first. Empty before [`Network::set_neighbours`].
     #[inline]
     pub fn neighbours(&self, visit: u32) -> &[Neighbour] {
-        let start = visit as usize * self.num_neighbours;
-        &self.neighbours[start..start + self.num_neighbours]
+        let NeighbourLists { neighbours, list_size } = &self.lists;
+        let start = visit as usize * list_size;
+        &neighbours[start..start + list_size]
     }
 
-    /// Fills the neighbour lists: O(n log n).
+    /// Finds the neighbours of all visits, which [`Network::set_neighbours`] takes: O(n log n). `None`, if the time is over before.
     ///
     /// On a lattice most distances are tied; [`NUM_NEIGHBOURS`] reaches beyond the ring of eight, so that none of it is lost.
-    pub fn find_neighbours(&mut self) {
-        self.num_neighbours = NUM_NEIGHBOURS.min(self.num_visits - 1);
+    pub fn find_neighbours(&self, budget: &Budget<'_>) -> Option<NeighbourLists> {
+        let list_size = NUM_NEIGHBOURS.min(self.num_visits - 1);
         let tree = KdTree::new(&self.points[..self.num_visits]);
-        let mut found = Vec::with_capacity(self.num_neighbours);
-        let mut neighbours = Vec::with_capacity(self.num_visits * self.num_neighbours);
+        let mut found = Vec::with_capacity(list_size);
+        let mut neighbours = Vec::with_capacity(self.num_visits * list_size);
         for visit in 0..self.num_visits {
-            tree.nearest(visit, self.num_neighbours, &mut found);
+            if visit % VISITS_PER_LOOK == VISITS_PER_LOOK - 1 && budget.is_time_over() {
+                return None;
+            }
+            tree.nearest(visit, list_size, &mut found);
             neighbours.extend(found.iter().map(|near| {
                 let leg = leg_of_length(near.squared_distance.sqrt(), self.stop);
                 Neighbour { leg, node: near.index }
             }));
         }
-        self.neighbours = neighbours;
+        Some(NeighbourLists { neighbours, list_size })
+    }
+
+    /// Takes the lists that [`Network::find_neighbours`] made.
+    pub fn set_neighbours(&mut self, lists: NeighbourLists) {
+        self.lists = lists;
     }
 }
 

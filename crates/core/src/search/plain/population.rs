@@ -77,7 +77,7 @@ impl Population {
         // Steps a visit that the whole effort is worth.
         let steps_per_visit = START_STEPS_PER_VISIT / search.budget.share_of_work(start_steps, begin);
         let num_starts = ((steps_per_visit / RACE_STEPS_PER_VISIT) as usize).clamp(1, MAX_STARTS);
-        chains.extend((1..num_starts).map(start));
+        chains.extend((1..num_starts).take_while(|_| !search.budget.is_time_over()).map(start));
         let least_steps_per_visit =
             CHILDREN_STEPS_PER_VISIT.0.max(CHILDREN_STEPS_PER_VISIT.1 * search.network.num_visits as f64);
         let num_parents = if steps_per_visit < least_steps_per_visit || search.network.num_routes == 1 {
@@ -88,6 +88,7 @@ impl Population {
         let random = Random::new(search.seed(u64::MAX - thread as u64));
         let child_share = (CHILD_STEPS_PER_VISIT / steps_per_visit).max(MIN_CHILD_SHARE);
         let mut population = Self { chains, random, child_share };
+        let num_starts = population.chains.len();
         let num_rounds = (num_starts as f64 / num_parents as f64).log2().ceil() as usize;
         // Also starts that are all to be parents must first be improved.
         for rounds_left in (1..=num_rounds.max(usize::from(num_starts > 1))).rev() {

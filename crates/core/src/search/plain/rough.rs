@@ -8,7 +8,7 @@
 //! - Sectors are balanced by the cost of their tours: once before smoothing, and then by visits at the borders that go to
 //!   the next sector, to the cheapest place there.
 //!
-//! O(n log n) for n visits; after the sorting everything is O(n).
+//! O(n log n) for n visits; after the sorting everything is O(n), and stops when the time is over.
 
 use super::network::Network;
 use super::order::{ends_by_cost, pseudo_angle};
@@ -39,6 +39,10 @@ const MAX_CROSSINGS: usize = 64;
 /// Balancings after each smoothing: as borders move by the mean cost of a visit, which the legs to the depot are part of, one
 /// moves them too little.
 const NUM_BALANCINGS: usize = 2;
+/// What counts as shorter, relative to the longest route: above rounding.
+const MIN_GAIN: f64 = 1e-12;
+/// Visits that are smoothed and balanced once, though the time be over: that takes a tenth of a millisecond.
+const MAX_SMALL: usize = 1000;
 /// Visits that are moved in one piece, at most.
 const MAX_PIECE: usize = 3;
 
@@ -94,25 +98,33 @@ impl<'a> RoughPlan<'a> {
         Self { network, visits, ends, paths, places, rows: Rows::default(), best }
     }
 
-    /// Smooths and balances until that helps no more or the time is over, at least a little; the best routes on the way.
+    /// Smooths and balances until that helps no more or the time is over, small farms at least a little; the best routes on the
+    /// way.
     pub fn improved(mut self, budget: &Budget<'_>) -> Vec<Vec<u32>> {
+        let unlimited = Budget::new(None, None, None);
+        let is_small = self.visits.len() <= MAX_SMALL;
         let mut num_idle = 0;
-        for piece in (1..=MAX_PIECE).cycle() {
+        for (round, piece) in (1..=MAX_PIECE).cycle().enumerate() {
             let longest = self.best.longest;
+            let least = if round == 0 && is_small { &unlimited } else { budget };
             for path in &mut self.paths {
-                path.or_opt(self.network, piece, MIN_SAVING, &mut self.rows);
+                path.or_opt(self.network, least, piece, MIN_SAVING, &mut self.rows);
             }
-            if !budget.is_time_over() {
-                for path in &mut self.paths {
-                    path.two_opt(self.network, &mut self.rows);
+            for path in &mut self.paths {
+                if budget.is_time_over() {
+                    break;
                 }
+                path.two_opt(self.network, budget, &mut self.rows);
             }
             let mut costs = self.keep_best();
             for _ in 0..NUM_BALANCINGS {
+                if least.is_time_over() {
+                    break;
+                }
                 self.balance(&costs);
                 costs = self.keep_best();
             }
-            num_idle = if self.best.longest < longest { 0 } else { num_idle + 1 };
+            num_idle = if self.best.longest < longest * (1.0 - MIN_GAIN) { 0 } else { num_idle + 1 };
             if budget.is_time_over() || num_idle == MAX_PIECE {
                 break;
             }

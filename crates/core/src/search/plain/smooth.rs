@@ -8,9 +8,12 @@
 //! limited, so that a pass over n visits is O(n).
 
 use super::network::Network;
+use crate::effort::Budget;
 
 /// Legs on either side of a leg or visit that a move may reach, at most.
 const WINDOW: usize = 256;
+/// Places looked at between two looks at the clock.
+const PLACES_PER_LOOK: usize = 256;
 /// Numbers handled at once: two vectors of four, to hide the latency.
 const LANES: usize = 8;
 /// Coordinate of the places after the end of a path: farther than any visit, and finite when squared.
@@ -97,12 +100,16 @@ impl Path {
         }
     }
 
-    /// 2-opt: legs a-b and c-d become a-c and b-d. For each leg in turn, the best such exchange with a later one.
-    pub fn two_opt(&mut self, network: &Network, rows: &mut Rows) {
+    /// 2-opt: legs a-b and c-d become a-c and b-d. For each leg in turn, the best such exchange with a later one, until the time
+    /// is over.
+    pub fn two_opt(&mut self, network: &Network, budget: &Budget<'_>, rows: &mut Rows) {
         let num_legs = self.nodes.len() - 1;
         rows.make_room(self.nodes.len());
         let mut is_near_known = false;
         for first in 0..num_legs.saturating_sub(2) {
+            if first % PLACES_PER_LOOK == PLACES_PER_LOOK - 1 && budget.is_time_over() {
+                return;
+            }
             let start = first + 2;
             let width = (num_legs - start).min(WINDOW);
             let padded_width = width.next_multiple_of(LANES);
@@ -139,10 +146,13 @@ impl Path {
     }
 
     /// Or-opt: `size` visits in a row move to the best leg for them, either way round, if leaving saves more than `min_saving`
-    /// where they are.
-    pub fn or_opt(&mut self, network: &Network, size: usize, min_saving: f32, rows: &mut Rows) {
+    /// where they are; until the time is over.
+    pub fn or_opt(&mut self, network: &Network, budget: &Budget<'_>, size: usize, min_saving: f32, rows: &mut Rows) {
         rows.make_room(self.nodes.len());
         for start in 1..self.nodes.len().saturating_sub(size) {
+            if start % PLACES_PER_LOOK == 0 && budget.is_time_over() {
+                return;
+            }
             let last = start + size - 1;
             let closed = length(self.xs[last + 1] - self.xs[start - 1], self.ys[last + 1] - self.ys[start - 1]);
             let saved = self.legs[start - 1] + self.legs[last] - closed;
@@ -318,6 +328,7 @@ mod tests {
     use super::*;
     use crate::geometry::Point;
     use crate::problem::Problem;
+    use crate::search::plain::testing::unlimited;
     use proptest::prelude::*;
 
     fn network(points: &[(f64, f64)]) -> (Network, Coordinates) {
@@ -336,7 +347,7 @@ mod tests {
     fn two_opt_uncrosses_a_square() {
         let (network, places) = network(&[(0.0, 1.0), (1.0, 0.0), (1.0, 1.0)]);
         let mut path = Path::new(&places, &[0, 1, 2]);
-        path.two_opt(&network, &mut Rows::default());
+        path.two_opt(&network, &unlimited(), &mut Rows::default());
         assert_eq!(network.route_cost(path.route()), 4.0);
     }
 
@@ -354,7 +365,7 @@ mod tests {
             let (network, places) = network(&points);
             let route: Vec<u32> = (0..points.len() as u32).collect();
             let mut path = Path::new(&places, &route);
-            path.or_opt(&network, size, 0.1, &mut Rows::default());
+            path.or_opt(&network, &unlimited(), size, 0.1, &mut Rows::default());
             assert!(network.route_cost(path.route()) < network.route_cost(&route) - 1.0, "{:?}", path.route());
             assert_eq!(sorted(path.route().to_vec()), route);
         }
@@ -379,8 +390,8 @@ mod tests {
         let (network, places) = network(&points);
         let route: Vec<u32> = (0..1000).collect();
         let mut path = Path::new(&places, &route);
-        path.two_opt(&network, &mut Rows::default());
-        path.or_opt(&network, 2, 0.0, &mut Rows::default());
+        path.two_opt(&network, &unlimited(), &mut Rows::default());
+        path.or_opt(&network, &unlimited(), 2, 0.0, &mut Rows::default());
         assert!(network.route_cost(path.route()) < 0.5 * network.route_cost(&route));
         assert_eq!(sorted(path.route().to_vec()), route);
     }
@@ -401,9 +412,9 @@ mod tests {
             let mut cost = network.route_cost(&route);
             for pass in passes {
                 if pass == 0 {
-                    path.two_opt(&network, &mut rows);
+                    path.two_opt(&network, &unlimited(), &mut rows);
                 } else {
-                    path.or_opt(&network, pass, min_saving, &mut rows);
+                    path.or_opt(&network, &unlimited(), pass, min_saving, &mut rows);
                 }
                 let smoothed = network.route_cost(path.route());
                 prop_assert!(smoothed <= cost * (1.0 + 1e-12));

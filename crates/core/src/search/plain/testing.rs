@@ -9,7 +9,8 @@ use crate::problem::{Depot, Problem, VehicleType, Visit, WayHome};
 
 pub(super) fn network_of(problem: &Problem) -> Network {
     let mut network = Network::new(problem);
-    network.find_neighbours();
+    let neighbours = network.find_neighbours(&unlimited()).unwrap();
+    network.set_neighbours(neighbours);
     network
 }
 
