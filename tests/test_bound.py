@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pondhop import Problem, instances
-from pondhop._core import lower_bound, lower_bound_of_total
+from pondhop import Problem, _core, evaluate, instances
+from pondhop._core import lower_bound, lower_bound_of_makespan, lower_bound_of_total
 
 SHARED = Path(__file__).parents[1].parent / "shared" / "data"
 needs_shared = pytest.mark.skipif(not SHARED.is_dir(), reason=f"the development data is not at {SHARED}")
@@ -45,3 +45,35 @@ def test_bounds_are_below_the_published_plans() -> None:
         problem = farm.to_problem(int(row["routes"]))
         # The file rounds to four decimals.
         assert lower_bound(problem) <= float(row["best_max_route_length"]) + 5e-5
+
+
+def test_the_bound_in_seconds_by_hand() -> None:
+    problem = Problem(
+        [0, 0],
+        [[60, 0], [20, 0]],
+        2,
+        service_durations_s=[10, 10],
+        speed_m_s=5,
+        leg_stop_s=3,
+        takeoff_s=9,
+        way_home_speed_m_s=10,
+        way_home_fixed_s=44,
+    )
+    # 9 + 60 / 5 + 3, 10, 60 / 10 + 44 s.
+    assert lower_bound_of_makespan(problem) == 84
+    assert evaluate(problem, [[0], [1]]).makespan_s == 84
+    plain = problem.replace(way_home_speed_m_s=None, way_home_fixed_s=0, takeoff_s=0)
+    assert lower_bound_of_makespan(plain) == 15 + 10 + 15
+
+
+def test_time_on_station_counts() -> None:
+    ponds = np.random.default_rng(5).uniform(0, 100, (40, 2))
+    problem = Problem([50, 50], ponds, 3, service_durations_s=np.full(40, 60.0), speed_m_s=5.0)
+    bound = lower_bound_of_makespan(problem)
+    plan = evaluate(problem, _core.search(problem, iterations=20_000)[0])
+    assert 40 * 60 / 3 < bound <= plan.makespan_s < 1.05 * bound
+
+
+def test_the_bounds_of_research_farms_are_one() -> None:
+    problem = instances.generate(150, seed=4)[0].to_problem(5)
+    assert lower_bound_of_makespan(problem) == lower_bound(problem)

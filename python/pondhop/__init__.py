@@ -13,6 +13,7 @@ from pondhop._core import (
     __version__,
     evaluate,
     lower_bound,
+    lower_bound_of_makespan,
     separation,
 )
 from pondhop.errors import Fault, InvalidInput
@@ -72,6 +73,7 @@ __all__ = [
     "generate",
     "generate_farm",
     "lower_bound",
+    "lower_bound_of_makespan",
     "plan",
     "plot",
     "read_farm",

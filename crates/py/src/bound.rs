@@ -18,6 +18,22 @@ pub fn lower_bound(py: Python<'_>, problem: &Problem) -> f64 {
     py.detach(|| pondhop_core::bound::lower_bound(&problem.inner))
 }
 
+/// Bound the makespan of every plan from below.
+///
+/// Returns
+/// -------
+/// float
+///     Seconds: every plan has a route that takes as long, with take-off, legs, stops, time on station and way home. Limits are
+///     not considered. Equal to `lower_bound` in research instances.
+///
+/// References
+/// ----------
+/// docs/explanation/bounds.md.
+#[pyfunction]
+pub fn lower_bound_of_makespan(py: Python<'_>, problem: &Problem) -> f64 {
+    py.detach(|| pondhop_core::bound::lower_bound_of_makespan(&problem.inner))
+}
+
 /// Bound the total length of every plan from below.
 ///
 /// Returns

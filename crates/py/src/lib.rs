@@ -27,7 +27,7 @@ mod _core {
     #[pymodule_export]
     use crate::attention::AttentionModel;
     #[pymodule_export]
-    use crate::bound::{lower_bound, lower_bound_of_total};
+    use crate::bound::{lower_bound, lower_bound_of_makespan, lower_bound_of_total};
     #[pymodule_export]
     use crate::evaluate::evaluate;
     #[pymodule_export]
