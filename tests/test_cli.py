@@ -152,7 +152,7 @@ def test_plan_writes_everything_a_crew_needs(run: Run, tmp_path: Path) -> None:
     assert ran.code == 0
     assert ran.err == ""
     assert "Assumed, not measured" in ran.out
-    assert "No plan has a longest route below" in ran.out
+    assert "No plan is done with its longest route in less than" in ran.out
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written == {"plan.json", "plan.geojson", "missions"}
     missions = {path.name for path in (tmp_path / "out" / "missions").iterdir()}

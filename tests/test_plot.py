@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -10,9 +11,10 @@ import pytest
 
 from hand_made import make_farm, make_plan, square, two_drones
 from pondhop import InvalidInput, Problem, _core, evaluate
-from pondhop.farm import read_farm
+from pondhop.farm import Pond, read_farm
 from pondhop.fleet import Fleet
 from pondhop.palette import ROUTE_COLOURS
+from pondhop.units import clock_text
 
 pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install pondhop[plot]")
 
@@ -42,15 +44,19 @@ def grid(num_ponds_per_side: int) -> Problem:
     return Problem((0.0, 0.0), np.array([(x, y) for x in side for y in side]), 24)
 
 
-def test_the_legend_tells_each_routes_length_and_time() -> None:
+def test_the_legend_tells_each_routes_length_energy_and_times() -> None:
     farm_plan = two_drones()
     ax = plot_plan(farm_plan)
-    lengths, durations = farm_plan.solution.plan.route_lengths, farm_plan.solution.plan.route_durations_s
-    assert legend_texts(ax) == [
-        f"1: {lengths[0]:,.0f} m, 3 ponds, {durations[0] / 60:.0f} min",
-        f"2: {lengths[1]:,.0f} m, 2 ponds, {durations[1] / 60:.0f} min",
+    plan, interval_s = farm_plan.solution.plan, farm_plan.fleet.takeoff_interval_s
+    lengths, durations, energies = plan.route_lengths, plan.route_durations_s, plan.route_energies_j
+    assert set(legend_texts(ax)) == {
+        f"1: 3 ponds, {lengths[0]:.0f} m, {energies[0] / 3600:.1f} Wh, starts 0:00, back {clock_text(durations[0])}",
+        f"2: 2 ponds, {lengths[1]:.0f} m, {energies[1] / 3600:.1f} Wh, starts 0:{interval_s:02.0f}, "
+        f"back {clock_text(interval_s + durations[1])}",
+        "fence",
         "depot",
-    ]
+        "shaded: around the ponds of one drone",
+    }
     assert ax.get_title(loc="left") == "Test farm"
     # In metres: 0.001 degrees of latitude north are 111 m.
     routes = [line for line in ax.lines if len(line.get_xdata()) == 5]  # type: ignore[arg-type]
@@ -58,11 +64,32 @@ def test_the_legend_tells_each_routes_length_and_time() -> None:
 
 
 def test_the_scale_bar_is_as_long_as_it_says() -> None:
-    ax = plot_plan(two_drones())
-    (text,) = [text for text in ax.texts if text.get_text().endswith((" m", " km"))]
-    assert text.get_text() == "200 m"
-    (bar,) = [np.asarray(line.get_xydata()) for line in ax.lines if line.get_linewidth() == 2]
-    assert bar[1] - bar[0] == pytest.approx([200, 0])
+    for units, ending, metres in (("metric", "200 m", 200.0), ("us", "1000 ft", 304.8)):
+        ax = plot_plan(two_drones(), units=units)  # type: ignore[arg-type]
+        texts = [text.get_text() for text in ax.texts]
+        assert ending in texts
+        assert "N" in texts
+        (bar,) = [np.asarray(line.get_xydata()) for line in ax.lines if line.get_linewidth() == 2]
+        assert bar[1] - bar[0] == pytest.approx([metres, 0])
+
+
+def test_ponds_are_named_where_there_is_room() -> None:
+    farm_plan = two_drones()
+    texts = [text.get_text() for text in plot_plan(farm_plan).texts]
+    assert {"P0", "P1", "P2", "P3", "P4"} <= set(texts)
+    ponds = tuple(Pond(f"Pond {i}", (-89.0 + 1e-7 * i, 37.001)) for i in range(50))
+    crowded = make_plan(make_farm(ponds=(*ponds, Pond("Far", (-88.99, 37.005)))), Fleet(1), [list(range(51))])
+    named = [text.get_text() for text in plot_plan(crowded).texts if text.get_text().startswith(("Pond", "Far"))]
+    assert named == ["Far"]
+
+
+@pytest.mark.parametrize(
+    "name", ["$x^", "[bold]", "a_b $\\frac$ {", "塘 1", "บ่อ 1", "بركة", "\udcff", "🐟 \u202e1", "line\nend"]
+)
+def test_any_name_is_drawn_without_a_warning(tmp_path: Path, name: str) -> None:
+    farm = make_farm(name=name, ponds=tuple(replace(pond, id=name + pond.id) for pond in make_farm().ponds))
+    save_figure(plot_plan(make_plan(farm, Fleet(1), [[0, 1, 2, 3, 4]])), tmp_path / "plan.png")
+    save_figure(plot_plan(make_plan(farm, Fleet(1), [[0, 1, 2, 3, 4]])), tmp_path / "plan.svg")
 
 
 def test_unserved_ponds_and_no_fly_zones_are_drawn() -> None:
@@ -149,7 +176,7 @@ def test_a_real_farm_is_drawn(tmp_path: Path) -> None:
     fleet = Fleet(num_drones=3)
     ax = plot_plan(make_plan(farm, fleet, sectors(farm.to_problem(fleet), 3)))
     save_figure(ax, tmp_path / "plan.svg")
-    assert len(legend_texts(ax)) == 4
+    assert len(legend_texts(ax)) == 5
 
 
 def test_importing_plot_loads_no_matplotlib() -> None:

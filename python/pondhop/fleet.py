@@ -44,6 +44,7 @@ _RANGES = {
     "dip_height_m": (0.1, MAX_HEIGHT_M),
     "max_route_length_m": (1.0, 1e7),
     "max_route_duration_s": (1.0, 1e6),
+    "takeoff_interval_s": (0.0, 600.0),
 }
 """Smallest and largest sensible value of each number."""
 
@@ -73,6 +74,8 @@ class Fleet:
         Height above ground at which a drone holds while its probe hangs in the water (``hover-dip``).
     max_route_length_m, max_route_duration_s
         What one drone can fly; ``None`` where nothing limits it.
+    takeoff_interval_s
+        Time between the take-offs of two drones, so that they do not meet in the yard.
     assumptions
         Names of the fields above that hold a default nobody confirmed. `read_fleet` names those absent from the file; a
         fleet made directly names those equal to the default. A limit of ``None`` assumes nothing.
@@ -92,6 +95,7 @@ class Fleet:
     dip_height_m: float = 2.0
     max_route_length_m: float | None = None
     max_route_duration_s: float | None = None
+    takeoff_interval_s: float = 10.0
     assumptions: tuple[str, ...] = field(default=_ASSUMABLE, compare=False, kw_only=True)
 
     def __post_init__(self) -> None:

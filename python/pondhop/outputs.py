@@ -10,6 +10,7 @@ from pondhop.files.plan_geojson import write_plan_geojson
 from pondhop.files.plan_json import write_plan_json
 from pondhop.missions import write_missions
 from pondhop.solution import FarmPlan
+from pondhop.units import Units
 
 PLAN_JSON, PLAN_GEOJSON, MISSIONS = "plan.json", "plan.geojson", "missions"
 FIGURES = ("plan.png", "plan.svg")
@@ -31,7 +32,7 @@ class Outputs:
     faults: tuple[Fault, ...]
 
 
-def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool) -> Outputs:
+def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units: Units = "metric") -> Outputs:
     """Write all that a plan becomes; pictures of an earlier plan are removed where none is drawn.
 
     Parameters
@@ -42,6 +43,8 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool) -> Out
         The plan.
     has_figure
         Whether to draw it, which needs matplotlib.
+    units
+        What the picture tells lengths in.
 
     Returns
     -------
@@ -64,7 +67,7 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool) -> Out
     if has_figure:
         from pondhop import plot
 
-        axes = plot.plot_plan(farm_plan)
+        axes = plot.plot_plan(farm_plan, units=units)
         for name in FIGURES:
             plot.save_figure(axes, folder / name)
     else:

@@ -15,10 +15,10 @@ from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
 
-from pondhop import _core
+from pondhop import _core, missions
 from pondhop._core import Problem
 from pondhop.errors import Fault, InvalidInput
-from pondhop.solution import FarmPlan, Solution
+from pondhop.solution import FarmPlan, FarmViolation, Solution
 
 if TYPE_CHECKING:
     from pondhop.farm.model import Farm
@@ -32,9 +32,23 @@ Routes hold pond indices in flying order, the depot implied at both ends; at mos
 """
 
 
-SEARCH_SECONDS_PER_POND = 2e-3
-SEARCH_SECONDS = (0.1, 60.0)
-"""How long `search` takes where neither a time limit nor iterations are given: by pond, at least and at most."""
+SEARCH_STEPS_PER_POND, MOST_STEPS_BY_POND = 8_000, 500_000
+"""Steps of `search` where neither time limit nor iterations are given: by pond on small farms, up to about a second."""
+
+LEAST_SEARCH_STEPS_PER_POND, MOST_SEARCH_STEPS = 1_000, 20_000_000
+"""Steps by pond on large farms: two milliseconds a pond, up to about a minute."""
+
+STEPS_PER_POND_OF_SIZING = 500
+"""Steps of a search that finds out whether a number of drones is enough."""
+
+LIMIT_KINDS = ("too_long", "too_slow", "too_much_energy")
+"""Violations that more drones may cure."""
+
+_LIMIT_NAMES = {
+    "too_long": "max_route_length_m",
+    "too_slow": "max_route_duration_s",
+    "too_much_energy": "what the battery gives above its reserve",
+}
 
 Objective = Literal["max", "total"]
 Decoding = Literal["greedy", "symmetries", "sampling"]
@@ -148,20 +162,20 @@ class Planner:
     is_airspace_shared: bool = False
 
 
-def _search_time_limit_s(problem: Problem, options: Options) -> float | None:
-    """Return how long to search: as asked, or by the size of the farm."""
+def _search_iterations(problem: Problem, options: Options) -> int | None:
+    """Return how many steps to search: as asked, or by the size of the farm, so that every machine finds the same."""
     if options.time_limit_s is not None or options.iterations is not None:
-        return options.time_limit_s
-    least_s, most_s = SEARCH_SECONDS
-    return min(max(least_s, SEARCH_SECONDS_PER_POND * problem.num_ponds), most_s)
+        return options.iterations
+    steps = min(SEARCH_STEPS_PER_POND * problem.num_ponds, MOST_STEPS_BY_POND)
+    return max(steps, min(LEAST_SEARCH_STEPS_PER_POND * problem.num_ponds, MOST_SEARCH_STEPS))
 
 
 def _search(problem: Problem, options: Options) -> Planned:
     routes, elapsed_s, _, is_interrupted = _core.search(
         problem,
         seed=options.seed,
-        time_limit_s=_search_time_limit_s(problem, options),
-        iterations=options.iterations,
+        time_limit_s=options.time_limit_s,
+        iterations=_search_iterations(problem, options),
         threads=options.threads,
         slack=options.slack_percent / 100,
         objective=options.objective,
@@ -192,7 +206,7 @@ def _auto(problem: Problem, options: Options) -> Planned:
     elif options.iterations is not None:
         how_long = f"{options.iterations} steps, as asked"
     else:
-        how_long = f"{_search_time_limit_s(problem, options):g} s, which is enough for {problem.num_ponds} ponds"
+        how_long = f"{_search_iterations(problem, options):,} steps, by the number of ponds"
     reason = f"search for {how_long}; it has the shortest routes where drones may share airspace"
     return replace(_search(problem, options), reason=reason)
 
@@ -341,6 +355,7 @@ def solve(
         elapsed_s=planned.elapsed_s,
         cpu_s=cpu_s,
         lower_bound=_core.lower_bound(problem),
+        lower_bound_s=_core.lower_bound_of_makespan(problem),
         is_interrupted=planned.is_interrupted,
         reason=planned.reason,
     )
@@ -377,7 +392,56 @@ def plan(
     problem = farm.to_problem(fleet)
     solution = solve(problem, planner=planner, **options)
     separation = _core.separation(problem, solution.plan.routes)
-    return FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
+    farm_plan = FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
+    beyond: tuple[FarmViolation, ...] = ()
+    if any(violation.kind in LIMIT_KINDS for violation in solution.plan.violations):
+        beyond = tuple(_ponds_beyond_reach(farm, problem))
+        if not beyond:
+            farm_plan = replace(farm_plan, num_drones_needed=drones_needed(problem, seed=solution.seed))
+    return replace(farm_plan, obstacles=(*beyond, *missions.obstacles(farm_plan)))
+
+
+def _ponds_beyond_reach(farm: Farm, problem: Problem) -> Iterator[FarmViolation]:
+    """Return a violation for each pond that breaks a limit even as the only one of its route."""
+    num_ponds = problem.num_ponds
+    alone = _core.evaluate(problem.replace(num_drones=num_ponds), [[pond] for pond in range(num_ponds)])
+    for violation in alone.violations:
+        pond = violation.route
+        if pond is not None:
+            message = f"pond {farm.ponds[pond].id} is out of reach: alone it breaks {_LIMIT_NAMES[violation.kind]}"
+            remedy = "leave the pond out, move the depot nearer to it, or raise the limit if the drones can do it"
+            yield FarmViolation("out_of_reach", message, remedy, None, pond, violation.value, violation.limit)
+
+
+def drones_needed(problem: Problem, *, seed: int = 1) -> int:
+    """Return how many drones keep every limit of a route: the fewest that short searches find a plan for.
+
+    Parameters
+    ----------
+    problem
+        Its own number of drones is the least that is tried.
+    seed
+        Of the searches.
+
+    Returns
+    -------
+    int
+        At most one a pond: that many are enough wherever any number is.
+    """
+    num_ponds = problem.num_ponds
+
+    def is_enough(num_drones: int) -> bool:
+        wider = problem.replace(num_drones=num_drones)
+        routes, *_ = _core.search(wider, seed=seed, iterations=STEPS_PER_POND_OF_SIZING * num_ponds)
+        return _core.evaluate(wider, routes).is_feasible
+
+    too_few, enough = problem.num_drones - 1, problem.num_drones
+    while enough < num_ponds and not is_enough(enough):
+        too_few, enough = enough, min(2 * enough, num_ponds)
+    while enough - too_few > 1:
+        middle = (too_few + enough) // 2
+        too_few, enough = (too_few, middle) if is_enough(middle) else (middle, enough)
+    return enough
 
 
 def _faults(options: Options, problem: Problem) -> list[Fault]:

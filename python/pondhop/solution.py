@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from html import escape
 
-from pondhop._core import Plan, Problem, Separation
+import numpy as np
+from numpy.typing import NDArray
+
+from pondhop._core import Plan, Problem, Separation, Violation
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
+from pondhop.palette import route_colour
+from pondhop.units import counted, duration_text, energy_text, length_text
 
 
 @dataclass(frozen=True)
@@ -20,9 +26,11 @@ class Solution:
     planner, seed
         How it was made.
     elapsed_s
-        Wall time of planning, from coordinates to finished routes.
+        Wall time of planning, from coordinates to finished routes; 0 for a plan that was read.
     lower_bound
-        No plan has a shorter longest route, in length units.
+        No plan has a shorter longest route: in length units for research farms, whose drones only fly.
+    lower_bound_s
+        No plan has a route of less time as its longest: legs, stops, service, take-off and way home.
     separation
         `None` where nobody measured it.
     cpu_s
@@ -39,6 +47,7 @@ class Solution:
     seed: int
     elapsed_s: float
     lower_bound: float
+    lower_bound_s: float
     separation: Separation | None = None
     cpu_s: float = 0.0
     is_interrupted: bool = False
@@ -46,22 +55,116 @@ class Solution:
 
     @property
     def gap_percent(self) -> float | None:
-        """How far the longest route is above the lower bound; `None` if the bound is 0."""
+        """How far the longest route is above the lower bound, both in length units; `None` if the bound is 0."""
         return gap_percent(self.plan.max_route_length, self.lower_bound)
 
+    @property
+    def gap_s_percent(self) -> float | None:
+        """How far the route that takes longest is above its lower bound, both in seconds; `None` if the bound is 0."""
+        return gap_percent(self.plan.makespan_s, self.lower_bound_s)
 
-def gap_percent(max_route_length: float, lower_bound: float) -> float | None:
+
+def gap_percent(longest: float, lower_bound: float) -> float | None:
     """Return how far a longest route is above the lower bound; `None` if the bound is 0."""
-    return 100 * (max_route_length - lower_bound) / lower_bound if lower_bound > 0 else None
+    return 100 * (longest - lower_bound) / lower_bound if lower_bound > 0 else None
+
+
+@dataclass(frozen=True)
+class FarmViolation:
+    """A rule that a plan of a farm breaks, in the words of the farm.
+
+    Attributes
+    ----------
+    kind
+        What kind of rule; docs/reference/json.md lists them.
+    message
+        What is wrong, in a sentence.
+    remedy
+        What the user can do about it.
+    drone
+        Number of the drone from 1, where it concerns one.
+    pond
+        Index of the pond, where it concerns one.
+    value, limit
+        By how much: metres, seconds, joules or a number, by kind.
+    """
+
+    kind: str
+    message: str
+    remedy: str
+    drone: int | None = None
+    pond: int | None = None
+    value: float | None = None
+    limit: float | None = None
+
+
+@dataclass(frozen=True)
+class EnergyPhases:
+    """What a route takes from its battery, in joules, by what the drone does.
+
+    Attributes
+    ----------
+    takeoff_j, legs_j, sampling_j, way_home_j
+        The first take-off; flights to and between ponds; time on station; the way home with its landing.
+    """
+
+    takeoff_j: float
+    legs_j: float
+    sampling_j: float
+    way_home_j: float
+
+    @property
+    def total_j(self) -> float:
+        """The whole route."""
+        return self.takeoff_j + self.legs_j + self.sampling_j + self.way_home_j
 
 
 @dataclass(frozen=True)
 class FarmPlan:
-    """A solution for a real farm and fleet; pond indices of the routes are those of ``farm.ponds``."""
+    """A solution for a real farm and fleet; pond indices of the routes are those of ``farm.ponds``.
+
+    Attributes
+    ----------
+    farm, fleet, solution
+        What was planned, with what, and the routes.
+    obstacles
+        What keeps the routes from being flown beside the rules that the plan itself knows: legs that leave a fence or
+        cross a no-fly zone, missions that no autopilot stores, data nobody confirmed.
+    num_drones_needed
+        How many drones keep every limit where this plan breaks one; `None` where it breaks none, or nobody tried.
+    """
 
     farm: Farm
     fleet: Fleet
     solution: Solution
+    obstacles: tuple[FarmViolation, ...] = ()
+    num_drones_needed: int | None = None
+
+    @property
+    def violations(self) -> tuple[FarmViolation, ...]:
+        """Every rule that the plan breaks; empty for one that can be flown."""
+        broken = self.solution.plan.violations
+        return (*(self._in_words(violation) for violation in broken), *self.obstacles)
+
+    @property
+    def is_feasible(self) -> bool:
+        """Whether the plan can be flown."""
+        return not self.violations
+
+    @property
+    def takeoff_times_s(self) -> tuple[float, ...]:
+        """When each drone takes off, in seconds after the first: some time apart, so that none meets another."""
+        return tuple(drone * self.fleet.takeoff_interval_s for drone in range(len(self.solution.plan.routes)))
+
+    @property
+    def all_back_s(self) -> float:
+        """When the last drone is back, in seconds after the first take-off."""
+        durations_s = self.solution.plan.route_durations_s
+        return max((start + float(durations_s[drone]) for drone, start in enumerate(self.takeoff_times_s)), default=0.0)
+
+    def energy_phases(self, drone: int) -> EnergyPhases:
+        """Return what a route takes, by phases; drones count from 0 here, as routes do."""
+        return EnergyPhases(*map(float, self.solution.plan.phase_energies_j[drone]))
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -69,9 +172,81 @@ class FarmPlan:
         notes = list(self.farm.notes)
         if self.solution.reason:
             notes.append(f"Planner {self.solution.planner} chose {self.solution.reason}.")
-        if self.fleet.sampling == "splashdown":
-            notes.append(
-                "Splashdown: set bit 2 of the ArduPilot parameter MIS_OPTIONS (add 4) on every drone, or it disarms on "
-                "the first pond and stays there."
-            )
+        if self.solution.is_interrupted:
+            notes.append("The planning was stopped with Ctrl-C: this is the best plan until then.")
         return tuple(notes)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the routes as a small map, and a row a drone."""
+        plan = self.solution.plan
+        rows = [
+            f"<tr><td style='color:{route_colour(drone)}'>&#9632; {drone + 1}</td><td>{len(route)}</td>"
+            f"<td>{length_text(float(plan.route_lengths[drone]))}</td>"
+            f"<td>{duration_text(float(plan.route_durations_s[drone]))}</td>"
+            f"<td>{energy_text(float(plan.route_energies_j[drone]))}</td></tr>"
+            for drone, route in enumerate(plan.routes)
+        ]
+        heads = "".join(f"<th>{head}</th>" for head in ("Drone", "Ponds", "Length", "Duration", "Energy"))
+        broken = "".join(f"<li>{escape(violation.message)}</li>" for violation in self.violations)
+        return (
+            f"<b>{escape(self.farm.name)}</b>: {counted(len(self.farm.ponds), 'pond')}, "
+            f"{counted(len(plan.routes), 'route')}<br>{_map_svg(self.solution.problem, plan)}"
+            f"<table><tr>{heads}</tr>{''.join(rows)}</table>" + (f"<ul>{broken}</ul>" if broken else "")
+        )
+
+    def _in_words(self, violation: Violation) -> FarmViolation:
+        pond = None if violation.pond is None else f"pond {self.farm.ponds[violation.pond].id}"
+        drone = None if violation.route is None else violation.route + 1
+        value, limit = violation.value or 0.0, violation.limit or 0.0
+        match violation.kind:
+            case "unserved":
+                message, remedy = f"{pond} is not visited", "plan again"
+            case "repeated":
+                message, remedy = f"{pond} is visited {value:.0f} times", "plan again"
+            case "too_many_routes":
+                message = f"there are {counted(int(value), 'route')} for {counted(int(limit), 'drone')}"
+                remedy = f"plan again, with {value:.0f} drones if they are there"
+            case "too_long":
+                message = f"drone {drone} flies {length_text(value)}, max_route_length_m is {length_text(limit)}"
+                remedy = self._more_drones
+            case "too_slow":
+                message = f"drone {drone} is under way for {duration_text(value)}"
+                message += f", max_route_duration_s is {duration_text(limit)}"
+                remedy = self._more_drones
+            case "too_much_energy":
+                message = f"drone {drone} needs {energy_text(value)}"
+                message += f", its battery gives {energy_text(limit)} above the reserve"
+                remedy = self._more_drones
+            case _:
+                message, remedy = str(violation), "plan again"
+        return FarmViolation(violation.kind, message, remedy, drone, violation.pond, violation.value, violation.limit)
+
+    @property
+    def _more_drones(self) -> str:
+        if self.num_drones_needed is None:
+            return "use more drones, or leave ponds out"
+        return f"fly with {self.num_drones_needed} drones, or leave ponds out"
+
+
+_MAP_WIDTH = 420.0
+"""Of the map in a notebook, in pixels."""
+
+
+def _map_svg(problem: Problem, plan: Plan) -> str:
+    """Routes as lines, north up; the depot is a square."""
+    places = np.vstack([problem.depot, problem.ponds])
+    west, south = places.min(axis=0)
+    east, north = places.max(axis=0)
+    scale = _MAP_WIDTH / max(east - west, north - south, 1e-9)
+
+    def point(position: NDArray[np.float64]) -> str:
+        return f"{5 + scale * (position[0] - west):.1f},{5 + scale * (north - position[1]):.1f}"
+
+    lines = []
+    for drone, route in enumerate(plan.routes):
+        path = " ".join(map(point, (problem.depot, *problem.ponds[route], problem.depot)))
+        lines.append(f"<polyline points='{path}' fill='none' stroke='{route_colour(drone)}' stroke-width='1.5'/>")
+    x, _, y = point(problem.depot).partition(",")
+    depot = f"<rect x='{float(x) - 4:.1f}' y='{float(y) - 4:.1f}' width='8' height='8' fill='gray'/>"
+    width, height = scale * (east - west) + 10, scale * (north - south) + 10
+    return f"<svg width='{width:.0f}' height='{height:.0f}'>{''.join(lines)}{depot}</svg>"

@@ -44,6 +44,7 @@ def plan(
     ] = None,
     sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
     figure: Annotated[bool, typer.Option(help="Draw the plan (PNG and SVG).")] = True,
+    units: Annotated[Literal["metric", "us"], typer.Option(help="Units of lengths, for people.")] = "metric",
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
     **options: Unpack[PlainOptions],
@@ -67,14 +68,14 @@ def plan(
         advance()
         farm_plan = planners.plan(read, chosen_fleet, progress=search_progress(advance), **options)
         advance()
-        written = outputs.write_outputs(output, farm_plan, has_figure=figure)
+        written = outputs.write_outputs(output, farm_plan, has_figure=figure, units=units)
         advance(size=2.0 if figure else 1.0)
     if as_json:
         typer.echo((output / outputs.PLAN_JSON).read_text(encoding="utf-8"), nl=False)
     else:
         from pondhop.cli import printed
 
-        printed.print_farm_plan(farm_plan)
+        printed.print_farm_plan(farm_plan, units)
         typer.echo(f"Written to {output}: {', '.join(written.names)}")
     if written.faults:
         heading = "No mission was written, because this plan cannot be flown"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from statistics import fmean
 
@@ -10,43 +11,111 @@ from rich.table import Table
 
 from pondhop.files.routes_json import Judgement
 from pondhop.solution import FarmPlan, Solution
+from pondhop.units import (
+    Units,
+    clock_text,
+    counted,
+    duration_text,
+    energy_text,
+    height_text,
+    length_text,
+    speed_text,
+)
 
 MAX_ROWS = 20
 """Of a table with a row a farm; beyond it only the averages are printed."""
 
 
-def print_farm_plan(farm_plan: FarmPlan) -> None:
-    """Print the routes of a farm's plan, what it rests on and how good it is."""
-    console = Console(highlight=False)
+def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
+    """Print the routes of a farm's plan, what they take, what they rest on and how good they are."""
+    console = Console(highlight=False, markup=False)
     solution, farm = farm_plan.solution, farm_plan.farm
     plan = solution.plan
-    console.print(f"{farm.name}: {len(farm.ponds)} ponds, {len(plan.routes)} routes", style="bold")
-    table = Table()
-    for heading in ("Drone", "Ponds", "Length", "Duration"):
-        table.add_column(heading, justify="right")
-    for number, route in enumerate(plan.routes):
-        length, duration = _km(plan.route_lengths[number]), _minutes(plan.route_durations_s[number])
-        table.add_row(str(number + 1), str(len(route)), length, duration)
-    table.add_section()
-    table.add_row("longest", "", _km(plan.max_route_length), _minutes(plan.makespan_s), style="bold")
-    table.add_row(
-        "total", str(sum(map(len, plan.routes))), _km(plan.total_length), _minutes(sum(plan.route_durations_s))
-    )
-    console.print(table)
-
-    bound = f"No plan has a longest route below {_km(solution.lower_bound)}"
-    if solution.gap_percent is not None:
-        bound += f": this one is at most {solution.gap_percent:.0f} % above the best"
+    ponds, routes = counted(len(farm.ponds), "pond"), counted(len(plan.routes), "route")
+    console.print(f"{farm.name}: {ponds}, {routes}", style="bold")
+    console.print(_routes_table(farm_plan, units))
+    if plan.route_energies_j.any():
+        console.print(_energy_table(farm_plan))
+        console.print(_battery_line(farm_plan))
+    console.print(f"All drones are back {duration_text(farm_plan.all_back_s)} after the first take-off.")
+    bound = f"No plan is done with its longest route in less than {duration_text(solution.lower_bound_s)}"
+    if solution.gap_s_percent is not None:
+        bound += f": this one takes at most {_gap(solution.gap_s_percent)} longer than the best there is"
     console.print(f"{bound}.")
     if solution.separation is not None:
         overlap, num_crossings = solution.separation.overlap, solution.separation.num_crossings
+        on_ways = solution.separation.num_depot_leg_crossings
         console.print(
-            f"Routes of different drones share {overlap:.1%} of the farm's area and cross {num_crossings} times."
+            f"Between ponds, routes of different drones cross {counted(num_crossings, 'time')}; {on_ways} more "
+            f"crossings are on their ways out and home. They share {overlap:.1%} of the farm's area."
         )
-    console.print(f"Planner {solution.planner}, seed {solution.seed}, {1e3 * solution.elapsed_s:.2f} ms.")
-    _print_assumptions(console, farm_plan)
-    for violation in plan.violations:
-        console.print(f"Violation: {violation}", style="bold red")
+    console.print(f"Planner {solution.planner}, seed {solution.seed}, {duration_of_planning(solution.elapsed_s)}.")
+    _print_assumptions(console, farm_plan, units)
+    for violation in farm_plan.violations:
+        console.print(f"Violation: {violation.message} -> {violation.remedy}", style="bold red")
+
+
+def duration_of_planning(elapsed_s: float) -> str:
+    """Return how long planning took, in milliseconds below a second."""
+    return f"{1e3 * elapsed_s:.1f} ms" if elapsed_s < 1 else f"{elapsed_s:.2f} s"
+
+
+def _gap(gap_percent: float) -> str:
+    return "0.1 %" if 0 < gap_percent < 0.1 else f"{gap_percent:.1f} %"
+
+
+def _routes_table(farm_plan: FarmPlan, units: Units) -> Table:
+    """A row a drone; the one that takes longest is in bold and named below, so that no row mixes two drones."""
+    plan = farm_plan.solution.plan
+    table = Table()
+    for heading in ("Drone", "Ponds", "Length", "Duration", "Takes off", "Back"):
+        table.add_column(heading, justify="right")
+    longest = int(plan.route_durations_s.argmax()) if plan.routes else None
+    for drone, route in enumerate(plan.routes):
+        start_s, duration_s = farm_plan.takeoff_times_s[drone], float(plan.route_durations_s[drone])
+        table.add_row(
+            str(drone + 1),
+            str(len(route)),
+            length_text(float(plan.route_lengths[drone]), units),
+            duration_text(duration_s),
+            clock_text(start_s),
+            clock_text(start_s + duration_s),
+            style="bold" if drone == longest else None,
+        )
+    table.add_section()
+    num_ponds = sum(map(len, plan.routes))
+    total_s = duration_text(float(plan.route_durations_s.sum()))
+    table.add_row("total", str(num_ponds), length_text(plan.total_length, units), total_s, "", "")
+    if longest is not None:
+        table.caption = f"bold: drone {longest + 1} takes longest"
+    return table
+
+
+def _energy_table(farm_plan: FarmPlan) -> Table:
+    plan = farm_plan.solution.plan
+    usable_j = farm_plan.solution.problem.energy.usable_j
+    table = Table()
+    for heading in ("Drone", "Take-off", "Legs", "Sampling", "Way home", "Energy"):
+        table.add_column(heading, justify="right")
+    for drone in range(len(plan.routes)):
+        phases = farm_plan.energy_phases(drone)
+        is_over = phases.total_j > usable_j
+        table.add_row(
+            str(drone + 1),
+            *map(energy_text, (phases.takeoff_j, phases.legs_j, phases.sampling_j, phases.way_home_j, phases.total_j)),
+            style="bold red" if is_over else None,
+        )
+    return table
+
+
+def _battery_line(farm_plan: FarmPlan) -> str:
+    most_j = float(farm_plan.solution.plan.route_energies_j.max())
+    usable_j = farm_plan.solution.problem.energy.usable_j
+    if not math.isfinite(usable_j):
+        needed = energy_text(most_j)
+        return f"Flight time is unchecked: the fleet names no battery_wh, and the hungriest route takes {needed}."
+    share = 100 * most_j / usable_j
+    return f"A battery gives {energy_text(usable_j)} above its reserve; the hungriest route takes {share:.0f} % of it."
 
 
 def print_solutions(solutions: Sequence[Solution]) -> None:
@@ -105,23 +174,14 @@ def _averages_table(
     return table
 
 
-def _print_assumptions(console: Console, farm_plan: FarmPlan) -> None:
+def _print_assumptions(console: Console, farm_plan: FarmPlan, units: Units) -> None:
     fleet = farm_plan.fleet
     console.print(
-        f"Fleet: {fleet.speed_m_s:g} m/s, {fleet.transit_height_m:g} m high, {fleet.sampling} with "
-        f"{fleet.service_s:.1f} s a pond, {fleet.leg_stop_s:g} s a leg to stop and start."
+        f"Fleet: {speed_text(fleet.speed_m_s, units)}, {height_text(fleet.transit_height_m, units)} high, "
+        f"{fleet.sampling} with {fleet.service_s:.1f} s a pond, {fleet.leg_stop_s:g} s a leg to stop and start."
     )
     if fleet.assumptions:
         names = ", ".join(fleet.assumptions)
         console.print(f"Assumed, not measured: {names}. Say what is true of your drones in a --fleet file.")
     for note in farm_plan.notes:
         console.print(f"Note: {note}")
-
-
-def _km(length_m: float) -> str:
-    return f"{length_m / 1000:.2f} km"
-
-
-def _minutes(duration_s: float) -> str:
-    minutes, seconds = divmod(round(duration_s), 60)
-    return f"{minutes} min {seconds:02} s"

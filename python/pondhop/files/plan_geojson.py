@@ -11,6 +11,13 @@ from typing import Any
 from pondhop.documents.atomic import write_all
 from pondhop.palette import route_colour
 from pondhop.solution import FarmPlan
+from pondhop.units import JOULES_PER_WATT_HOUR
+
+
+def plan_geojson(farm_plan: FarmPlan) -> str:
+    """Return the text of ``plan.geojson``; the same plan gives the same text."""
+    collection = {"type": "FeatureCollection", "features": list(_features(farm_plan))}
+    return json.dumps(collection, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def write_plan_geojson(path: str | os.PathLike[str], farm_plan: FarmPlan) -> None:
@@ -28,8 +35,7 @@ def write_plan_geojson(path: str | os.PathLike[str], farm_plan: FarmPlan) -> Non
     OSError
         If the file cannot be written.
     """
-    collection = {"type": "FeatureCollection", "features": list(_features(farm_plan))}
-    write_all({Path(path): json.dumps(collection, ensure_ascii=False, allow_nan=False) + "\n"})
+    write_all({Path(path): plan_geojson(farm_plan)})
 
 
 def _features(farm_plan: FarmPlan) -> Iterator[dict[str, Any]]:
@@ -45,12 +51,15 @@ def _features(farm_plan: FarmPlan) -> Iterator[dict[str, Any]]:
             "num_ponds": len(route),
             "length_m": round(float(plan.route_lengths[index]), 1),
             "duration_s": round(float(plan.route_durations_s[index]), 1),
+            "departure_s": round(farm_plan.takeoff_times_s[index], 1),
+            "energy_wh": round(float(plan.route_energies_j[index]) / JOULES_PER_WATT_HOUR, 1),
             "stroke": colour,
             "stroke-width": 3,
             "stroke-opacity": 0.9,
         }
         yield _feature("LineString", positions, properties)
     for index, route in enumerate(plan.routes):
+        start_s = farm_plan.takeoff_times_s[index]
         for order, pond in enumerate(route):
             properties = {
                 "role": "stop",
@@ -59,8 +68,8 @@ def _features(farm_plan: FarmPlan) -> Iterator[dict[str, Any]]:
                 "order": order + 1,
                 "pond": pond,
                 "id": farm.ponds[pond].id,
-                "arrival_s": round(float(plan.arrivals_s[index][order]), 1),
-                "departure_s": round(float(plan.departures_s[index][order]), 1),
+                "arrival_s": round(start_s + float(plan.arrivals_s[index][order]), 1),
+                "departure_s": round(start_s + float(plan.departures_s[index][order]), 1),
                 "marker-color": route_colour(index),
                 "marker-size": "small",
             }

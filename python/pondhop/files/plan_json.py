@@ -1,6 +1,8 @@
 """``plan.json``: a plan with its schedule and what it was made for, the contract for other programs.
 
-docs/reference/json.md describes it, ``documents/schemas/plan-1.json`` is its schema.
+docs/reference/json.md describes it, ``documents/schemas/plan-2.json`` is its schema. It is written by the tables below,
+key by key: a new field of a farm or fleet enters the file only here, and `tests/test_plan_json.py` asks for it.
+Files of version 1 are read by `plan_json_1`.
 """
 
 from __future__ import annotations
@@ -8,27 +10,45 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, fields, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pondhop._core import Separation, __version__, evaluate, separation
+from pondhop._core import Separation, __version__, evaluate, lower_bound, separation
 from pondhop.documents.atomic import write_all
-from pondhop.documents.schemas import read_json
-from pondhop.errors import Fault, InvalidInput
+from pondhop.documents.schemas import check_schema, read_json
+from pondhop.errors import InvalidInput
 from pondhop.farm.model import Farm, Pond
+from pondhop.files import plan_json_1
+from pondhop.files.compared import differences, unknown_ponds
 from pondhop.fleet import Fleet
 from pondhop.places import LonLat, Ring
-from pondhop.solution import FarmPlan, Solution
+from pondhop.solution import FarmPlan, FarmViolation, Solution
+from pondhop.units import JOULES_PER_WATT_HOUR
 
-SCHEMA = "pondhop-plan/1"
+SCHEMA = "pondhop-plan/2"
 
-_RELATIVE_TOLERANCE = 1e-6
-_ABSOLUTE_TOLERANCE = 1e-3
-"""How far the numbers of a file may be from what the evaluator finds: a millimetre, a millisecond, or rounding."""
+FLEET_KEYS = (
+    "num_drones",
+    "speed_m_s",
+    "transit_height_m",
+    "leg_stop_s",
+    "sampling",
+    "dwell_s",
+    "dip_height_m",
+    "max_route_length_m",
+    "max_route_duration_s",
+    "takeoff_interval_s",
+)
+"""Fields of a fleet in the file, each a number, a word or null; its assumptions stand beside them as a list."""
 
-_REMEDY = "change the routes only by planning again: all numbers of a plan follow from them"
+_DEPOT = "depot"
+
+
+def plan_json(farm_plan: FarmPlan) -> str:
+    """Return the text of ``plan.json``; the same plan gives the same text."""
+    return json.dumps(_plan_object(farm_plan), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def write_plan_json(path: str | os.PathLike[str], farm_plan: FarmPlan) -> None:
@@ -46,22 +66,22 @@ def write_plan_json(path: str | os.PathLike[str], farm_plan: FarmPlan) -> None:
     OSError
         If the file cannot be written.
     """
-    text = json.dumps(_plan_object(farm_plan), indent=1, ensure_ascii=False, allow_nan=False)
-    write_all({Path(path): text + "\n"})
+    write_all({Path(path): plan_json(farm_plan)})
 
 
 def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
-    """Read a ``plan.json``; the routes are evaluated anew, and the file's numbers must agree.
+    """Read a ``plan.json`` of any version; the routes are evaluated anew, and the file's numbers must agree.
 
     Parameters
     ----------
     path
-        A file as `write_plan_json` writes it.
+        A file as `write_plan_json` of this version or an earlier one wrote it.
 
     Returns
     -------
     FarmPlan
-        Equal to the one that was written.
+        Equal to the one that was written, but for the times that planning took. What keeps a plan from being flown
+        beside its routes (``obstacles``) is taken from the file; a plan of version 1 has the times of version 1.
 
     Raises
     ------
@@ -71,10 +91,13 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
     OSError
         If the file cannot be read.
     """
-    content = read_json(path, "plan-1")
-    farm, fleet = _farm(content["farm"]), _fleet(content["fleet"])
-    routes = [[stop["pond"] for stop in route["stops"]] for route in content["routes"]]
-    unknown = list(_unknown_ponds(routes, len(farm.ponds)))
+    content = read_json(path)
+    if isinstance(content, dict) and content.get("schema") == plan_json_1.SCHEMA:
+        return plan_json_1.farm_plan(content)
+    check_schema(content, "plan-2")
+    farm, fleet = read_farm_object(content["farm"]), _fleet(content["fleet"])
+    routes = [[int(stop["pond"]) for trip in route["trips"] for stop in trip["stops"]] for route in content["routes"]]
+    unknown = list(unknown_ponds(routes, len(farm.ponds), "routes[{route}].trips[0].stops[{order}].pond"))
     if unknown:
         raise InvalidInput(unknown)
     problem = farm.to_problem(fleet)
@@ -83,13 +106,19 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
         plan=evaluate(problem, routes),
         planner=content["planner"],
         seed=content["seed"],
-        elapsed_s=content["elapsed_s"],
-        lower_bound=content["lower_bound_m"],
+        elapsed_s=0.0,
+        lower_bound=lower_bound(problem),
+        lower_bound_s=content["lower_bound_s"],
         separation=separation(problem, routes) if content["separation"] else None,
+        is_interrupted=content["is_interrupted"],
+        reason=content["reason"],
     )
-    farm_plan = FarmPlan(farm, fleet, solution)
+    derived = FarmPlan(farm, fleet, solution, num_drones_needed=content["num_drones_needed"])
+    kinds = {violation.kind for violation in derived.violations}
+    obstacles = tuple(_violation(violation) for violation in content["violations"] if violation["kind"] not in kinds)
+    farm_plan = replace(derived, obstacles=obstacles)
     # All numbers of a plan follow from its routes, so what the file should hold is what we would write.
-    faults = list(_differences("", _without_version(content), _without_version(_plan_object(farm_plan))))
+    faults = list(differences("", _without_words(content), _without_words(_plan_object(farm_plan))))
     if faults:
         raise InvalidInput(faults)
     return farm_plan
@@ -98,65 +127,159 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
 def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
     farm, solution = farm_plan.farm, farm_plan.solution
     plan = solution.plan
+    energies_home_j = _energies_home_j(farm_plan)
     return {
         "schema": SCHEMA,
         "pondhop_version": __version__,
-        "farm": _listed(asdict(farm)),
-        "fleet": _listed(asdict(farm_plan.fleet)),
+        "farm": farm_object(farm),
+        "fleet": _fleet_object(farm_plan.fleet),
         "planner": solution.planner,
         "seed": solution.seed,
-        "elapsed_s": solution.elapsed_s,
-        "lower_bound_m": solution.lower_bound,
-        "gap_percent": solution.gap_percent,
+        "reason": solution.reason,
+        "is_interrupted": solution.is_interrupted,
+        "lower_bound_s": solution.lower_bound_s,
+        "gap_percent": solution.gap_s_percent,
         "separation": solution.separation and _separation_object(solution.separation),
         "summary": {
             "num_ponds": len(farm.ponds),
             "num_routes": len(plan.routes),
             "num_unserved": len(plan.unserved),
+            "makespan_s": plan.makespan_s,
+            "all_back_s": farm_plan.all_back_s,
             "max_route_length_m": plan.max_route_length,
             "total_length_m": plan.total_length,
-            "makespan_s": plan.makespan_s,
-            "is_feasible": plan.is_feasible,
+            "total_energy_wh": float(plan.route_energies_j.sum()) / JOULES_PER_WATT_HOUR,
+            "is_feasible": farm_plan.is_feasible,
         },
-        "routes": [_route_object(farm_plan, index) for index in range(len(plan.routes))],
-        "violations": [str(violation) for violation in plan.violations],
-        "unserved": [{"pond": pond, "id": farm.ponds[pond].id} for pond in plan.unserved],
+        "routes": [_route_object(farm_plan, index, energies_home_j) for index in range(len(plan.routes))],
+        "violations": [_violation_object(farm, violation) for violation in farm_plan.violations],
+        "num_drones_needed": farm_plan.num_drones_needed,
+        "unserved": [
+            {
+                "pond": pond,
+                "id": farm.ponds[pond].id,
+                "reason": "no route visits it",
+                "remedies": ["plan again"],
+            }
+            for pond in plan.unserved
+        ],
         "notes": list(farm_plan.notes),
     }
 
 
+def farm_object(farm: Farm) -> dict[str, Any]:
+    """Return a farm as it stands in the file."""
+    return {
+        "name": farm.name,
+        "ponds": [
+            {
+                "id": pond.id,
+                "sampling_point": list(pond.sampling_point),
+                "outline": _rings_object(pond.outline),
+                "service_s": pond.service_s,
+            }
+            for pond in farm.ponds
+        ],
+        "depot": list(farm.depot),
+        "stations": [list(station) for station in farm.stations],
+        "no_fly": [_rings_object(area) for area in farm.no_fly],
+        "fences": [_rings_object(area) for area in farm.fences],
+        "notes": list(farm.notes),
+    }
+
+
+def _fleet_object(fleet: Fleet) -> dict[str, Any]:
+    return {**{key: getattr(fleet, key) for key in FLEET_KEYS}, "assumptions": list(fleet.assumptions)}
+
+
+def _rings_object(rings: tuple[Ring, ...]) -> list[list[list[float]]]:
+    return [[list(position) for position in ring] for ring in rings]
+
+
 def _separation_object(measured: Separation) -> dict[str, Any]:
-    return {"overlap": measured.overlap, "num_crossings": measured.num_crossings}
+    return {
+        "overlap": measured.overlap,
+        "num_crossings": measured.num_crossings,
+        "num_depot_leg_crossings": measured.num_depot_leg_crossings,
+    }
 
 
-def _route_object(farm_plan: FarmPlan, index: int) -> dict[str, Any]:
-    plan = farm_plan.solution.plan
-    route = plan.routes[index]
-    leg_lengths_m = plan.leg_lengths_m[index].tolist()
-    stops = []
+def _violation_object(farm: Farm, violation: FarmViolation) -> dict[str, Any]:
+    return {
+        "kind": violation.kind,
+        "drone": violation.drone,
+        "pond": violation.pond,
+        "id": None if violation.pond is None else farm.ponds[violation.pond].id,
+        "value": violation.value,
+        "limit": violation.limit,
+        "message": violation.message,
+        "remedy": violation.remedy,
+    }
+
+
+def _route_object(farm_plan: FarmPlan, index: int, energies_home_j: list[float]) -> dict[str, Any]:
+    """A route is one trip: one battery, flown from the depot to the depot."""
+    plan, problem = farm_plan.solution.plan, farm_plan.solution.problem
+    route, start_s = plan.routes[index], farm_plan.takeoff_times_s[index]
+    lengths_m, energies_j = plan.leg_lengths_m[index], plan.leg_energies_j[index]
+    usable_j = problem.energy.usable_j
+    used_j, stops = 0.0, []
     for order, pond in enumerate(route):
         longitude, latitude = farm_plan.farm.ponds[pond].sampling_point
+        used_j += float(energies_j[order] + problem.service_energies_j[pond])
+        arrival_s = start_s + float(plan.arrivals_s[index][order])
         stops.append(
             {
                 "pond": pond,
                 "id": farm_plan.farm.ponds[pond].id,
                 "lon_deg": longitude,
                 "lat_deg": latitude,
-                "leg_length_m": leg_lengths_m[order],
-                "arrival_s": float(plan.arrivals_s[index][order]),
-                "departure_s": float(plan.departures_s[index][order]),
+                "leg_length_m": float(lengths_m[order]),
+                "arrival_s": arrival_s,
+                "start_s": arrival_s,
+                "departure_s": start_s + float(plan.departures_s[index][order]),
+                "energy_left_wh": (usable_j - used_j) / JOULES_PER_WATT_HOUR if math.isfinite(usable_j) else None,
+                "energy_home_wh": energies_home_j[pond] / JOULES_PER_WATT_HOUR,
             }
         )
+    phases = farm_plan.energy_phases(index)
+    length_m, duration_s = float(plan.route_lengths[index]), float(plan.route_durations_s[index])
+    energy_wh = float(plan.route_energies_j[index]) / JOULES_PER_WATT_HOUR
+    trip = {
+        "departure_s": start_s,
+        "arrival_s": start_s + duration_s,
+        "length_m": length_m,
+        "energy_wh": energy_wh,
+        "usable_energy_wh": usable_j / JOULES_PER_WATT_HOUR if math.isfinite(usable_j) else None,
+        "start_place": _DEPOT,
+        "end_place": _DEPOT,
+        "stops": stops,
+        "return_leg_length_m": float(lengths_m[-1]),
+    }
     return {
         "drone": index + 1,
-        "length_m": float(plan.route_lengths[index]),
-        "duration_s": float(plan.route_durations_s[index]),
-        "stops": stops,
-        "return_leg_length_m": leg_lengths_m[-1],
+        "length_m": length_m,
+        "duration_s": duration_s,
+        "energy_wh": energy_wh,
+        "energy_by_phase_wh": {
+            "takeoff": phases.takeoff_j / JOULES_PER_WATT_HOUR,
+            "legs": phases.legs_j / JOULES_PER_WATT_HOUR,
+            "sampling": phases.sampling_j / JOULES_PER_WATT_HOUR,
+            "way_home": phases.way_home_j / JOULES_PER_WATT_HOUR,
+        },
+        "trips": [trip],
     }
 
 
-def _farm(content: Mapping[str, Any]) -> Farm:
+def _energies_home_j(farm_plan: FarmPlan) -> list[float]:
+    """What the way home from each pond takes, landing included."""
+    problem = farm_plan.solution.problem
+    there_and_back = evaluate(problem, [[pond] for pond in range(problem.num_ponds)])
+    return [float(energies_j[-1]) for energies_j in there_and_back.leg_energies_j]
+
+
+def read_farm_object(content: Mapping[str, Any]) -> Farm:
+    """Return the farm that stands in a file of any version."""
     return Farm(
         name=content["name"],
         ponds=tuple(
@@ -172,11 +295,16 @@ def _farm(content: Mapping[str, Any]) -> Farm:
 
 
 def _fleet(content: Mapping[str, Any]) -> Fleet:
-    settings = {field.name: content[field.name] for field in fields(Fleet)}
+    settings = {key: content[key] for key in FLEET_KEYS}
     try:
         return Fleet(**settings | {"assumptions": tuple(content["assumptions"])})
     except InvalidInput as error:
         raise InvalidInput(replace(fault, path=f"fleet.{fault.path}") for fault in error.faults) from error
+
+
+def _violation(content: Mapping[str, Any]) -> FarmViolation:
+    keys = ("kind", "message", "remedy", "drone", "pond", "value", "limit")
+    return FarmViolation(**{key: content[key] for key in keys})
 
 
 def _lon_lat(position: list[float]) -> LonLat:
@@ -188,43 +316,10 @@ def _rings(rings: list[list[list[float]]]) -> tuple[Ring, ...]:
     return tuple(tuple(map(_lon_lat, ring)) for ring in rings)
 
 
-def _unknown_ponds(routes: list[list[int]], num_ponds: int) -> Iterator[Fault]:
-    for route, ponds in enumerate(routes):
-        for order, pond in enumerate(ponds):
-            if pond >= num_ponds:
-                place = f"routes[{route}].stops[{order}].pond"
-                yield Fault(place, f"there is no pond {pond}", f"give an index of 0 to {num_ponds - 1}")
-
-
-def _listed(value: Any) -> Any:
-    """Return the value with tuples as lists, as JSON gives them back."""
-    if isinstance(value, dict):
-        return {key: _listed(item) for key, item in value.items()}
-    return [_listed(item) for item in value] if isinstance(value, tuple | list) else value
-
-
-def _without_version(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Leave out what another version of pondhop may rightly write differently."""
-    return {key: value for key, value in content.items() if key not in ("pondhop_version", "notes")}
-
-
-def _differences(path: str, found: Any, expected: Any) -> Iterator[Fault]:
-    """Every place where a file does not say what its routes imply."""
-    if isinstance(expected, dict) and isinstance(found, dict):
-        for key in expected:
-            yield from _differences(f"{path}.{key}".removeprefix("."), found.get(key), expected[key])
-    elif isinstance(expected, list) and isinstance(found, list):
-        if len(expected) != len(found):
-            yield Fault(path, f"it has {len(found)} items, but the routes of the file give {len(expected)}", _REMEDY)
-            return
-        for index, (found_item, expected_item) in enumerate(zip(found, expected, strict=True)):
-            yield from _differences(f"{path}[{index}]", found_item, expected_item)
-    elif not _agree(found, expected):
-        yield Fault(path, f"it is {found!r}, but the routes of the file give {expected!r}", _REMEDY)
-
-
-def _agree(found: Any, expected: Any) -> bool:
-    numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (found, expected))
-    if numbers:
-        return math.isclose(found, expected, rel_tol=_RELATIVE_TOLERANCE, abs_tol=_ABSOLUTE_TOLERANCE)
-    return bool(found == expected)
+def _without_words(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out what another version of pondhop may rightly write differently: sentences, and its own name."""
+    kept = {key: value for key, value in content.items() if key not in ("pondhop_version", "notes")}
+    words = ("message", "remedy", "reason", "remedies")
+    for name in ("violations", "unserved"):
+        kept[name] = [{key: value for key, value in item.items() if key not in words} for item in content[name]]
+    return kept

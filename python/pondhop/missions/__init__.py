@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Container
 from pathlib import Path
 
 from pondhop.documents.atomic import write_all
@@ -13,14 +13,11 @@ from pondhop.missions.mavlink import MAX_NUM_ITEMS
 from pondhop.missions.mission import Mission, build_mission, check_mission
 from pondhop.missions.qgroundcontrol import parse_qgroundcontrol_plan, qgroundcontrol_plan
 from pondhop.missions.waypoints import parse_waypoints, waypoints
-from pondhop.solution import FarmPlan
+from pondhop.solution import FarmPlan, FarmViolation
 
-__all__ = ["write_missions"]
+__all__ = ["obstacles", "write_missions"]
 
 _MISSION_FILE = re.compile(r"drone-[1-9][0-9]*\.(plan|waypoints)")
-
-_TOLERANCE = 1e-9
-"""How far beyond a limit rounding may carry a length or duration, relative to the limit."""
 
 
 def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[Path]:
@@ -49,14 +46,15 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     OSError
         If a file cannot be written.
     """
-    folder, routes = Path(folder), farm_plan.solution.plan.routes
-    missions = [
-        build_mission(f"drone-{drone}", farm_plan.farm, farm_plan.fleet, route)
-        for drone, route in enumerate(routes, start=1)
+    folder = Path(folder)
+    missions = _missions(farm_plan)
+    faults = [
+        Fault(_place(violation), violation.message, violation.remedy)
+        for violation in (*farm_plan.violations, *(obstacles(farm_plan) if not farm_plan.obstacles else ()))
+        if violation.kind != "unserved"
     ]
-    faults = list(_limit_faults(farm_plan))
-    for mission in missions:
-        faults.extend(check_mission(mission, max_num_items=MAX_NUM_ITEMS))
+    if not missions:
+        faults.append(Fault("routes", "the plan has no route", "plan at least one pond"))
     if faults:
         _remove_missions(folder, keep=())
         raise InvalidInput(faults)
@@ -70,25 +68,41 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     return list(texts)
 
 
+def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
+    """Return what keeps the routes of a plan from being flown as missions; empty if nothing does.
+
+    Parameters
+    ----------
+    farm_plan
+        Its own ``obstacles`` are passed over.
+    """
+    return tuple(
+        FarmViolation("mission", _message(fault, mission), fault.action, drone=drone)
+        for drone, mission in enumerate(_missions(farm_plan), start=1)
+        for fault in check_mission(mission, max_num_items=MAX_NUM_ITEMS)
+    )
+
+
+def _message(fault: Fault, mission: Mission) -> str:
+    place = fault.path.removeprefix(mission.name).removeprefix(", ")
+    return f"{place}: {fault.message}" if place else fault.message
+
+
+def _missions(farm_plan: FarmPlan) -> list[Mission]:
+    return [
+        build_mission(f"drone-{drone}", farm_plan.farm, farm_plan.fleet, route)
+        for drone, route in enumerate(farm_plan.solution.plan.routes, start=1)
+    ]
+
+
+def _place(violation: FarmViolation) -> str:
+    return "the plan" if violation.drone is None else f"drone-{violation.drone}"
+
+
 def _remove_missions(folder: Path, keep: Container[Path]) -> None:
     for path in folder.iterdir() if folder.is_dir() else ():
         if _MISSION_FILE.fullmatch(path.name) and path not in keep:
             path.unlink()
-
-
-def _limit_faults(farm_plan: FarmPlan) -> Iterator[Fault]:
-    plan, fleet = farm_plan.solution.plan, farm_plan.fleet
-    if not plan.routes:
-        yield Fault("routes", "the plan has no route", "plan at least one pond")
-    limits = [
-        ("long", "m", "max_route_length_m", fleet.max_route_length_m, plan.route_lengths),
-        ("under way", "s", "max_route_duration_s", fleet.max_route_duration_s, plan.route_durations_s),
-    ]
-    for word, unit, name, limit, values in limits:
-        for drone, value in enumerate(values, start=1):
-            if limit is not None and value > limit * (1 + _TOLERANCE):
-                message = f"it is {value:.1f} {unit} {word}, the drone's {name} is {limit:g}"
-                yield Fault(f"drone-{drone}", message, "use more drones, or leave ponds out")
 
 
 def _plan_text(mission: Mission) -> str:
@@ -116,11 +130,16 @@ def _readme(farm_plan: FarmPlan) -> str:
         f"{plan.route_durations_s[index] / 60:.1f} min"
         for index, route in enumerate(plan.routes)
     ]
+    needs = [
+        "Splashdown: set bit 2 of the ArduPilot parameter MIS_OPTIONS (add 4) on every drone, or it disarms on the "
+        "first pond and stays there."
+    ]
     notes = [
         "For ArduPilot Copter. Load the .plan files in QGroundControl, or the .waypoints files in Mission Planner: the "
         "same missions, but only .plan holds the fence and the no-fly zones.",
         f"Heights are above the depot ({fleet.transit_height_m:g} m between ponds); the ground is taken to be flat.",
         "Every drone takes off at the depot and comes back by RTL, at the height that its parameter RTL_ALT sets.",
+        *(needs if fleet.sampling == "splashdown" else ()),
         *farm_plan.notes,
     ]
     return "\n".join([f"Missions for {farm_plan.farm.name}, {fleet.sampling}", "", *rows, "", *notes]) + "\n"

@@ -11,7 +11,7 @@ from typing import Any, Literal, NoReturn
 
 from pondhop.errors import Fault, InvalidInput
 
-SchemaName = Literal["plan-1", "qgroundcontrol-plan"]
+SchemaName = Literal["plan-1", "plan-2", "qgroundcontrol-plan"]
 
 _MAX_MESSAGE_LENGTH = 200
 """A message of the validator quotes the offending value, which may be a whole farm."""
@@ -23,20 +23,30 @@ def load_schema(name: SchemaName) -> dict[str, Any]:
     Parameters
     ----------
     name
-        ``plan-1`` is our plan.json, ``qgroundcontrol-plan`` the part of QGroundControl's format that we write.
+        ``plan-1`` and ``plan-2`` are our plan.json, ``qgroundcontrol-plan`` the part of QGroundControl's format that we
+        write.
     """
     text = resources.files(__package__).joinpath(f"{name}.json").read_text(encoding="utf-8")
     schema: dict[str, Any] = json.loads(text)
     return schema
 
 
-def read_json(path: str | os.PathLike[str], name: SchemaName) -> Any:
-    """Read a JSON file and check it against a schema: see `parse_json`.
+def read_json(path: str | os.PathLike[str]) -> Any:
+    """Read a JSON file.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    The value; only objects, lists, strings, finite numbers, booleans and None.
 
     Raises
     ------
     InvalidInput
-        As `parse_json`, or with the byte at which the file stops being text.
+        With the byte at which the file stops being text, or the line at which it stops being JSON.
     OSError
         If the file cannot be read.
     """
@@ -45,7 +55,7 @@ def read_json(path: str | os.PathLike[str], name: SchemaName) -> Any:
     except UnicodeDecodeError as error:
         fault = Fault(f"{path}, byte {error.start}", "this is not UTF-8 text", "save the file as UTF-8")
         raise InvalidInput([fault]) from error
-    return parse_json(text, name)
+    return _parse(text)
 
 
 def parse_json(text: str, name: SchemaName) -> Any:
@@ -67,9 +77,21 @@ def parse_json(text: str, name: SchemaName) -> Any:
     InvalidInput
         With every place that breaks the schema, or the line at which the text stops being JSON.
     """
+    value = _parse(text)
+    check_schema(value, name)
+    return value
+
+
+def check_schema(value: Any, name: SchemaName) -> None:
+    """Check a value of JSON against a schema.
+
+    Raises
+    ------
+    InvalidInput
+        With every place that breaks the schema.
+    """
     import jsonschema
 
-    value = _parse(text)
     validator = jsonschema.Draft202012Validator(load_schema(name))
     errors = sorted(validator.iter_errors(value), key=lambda error: [str(step) for step in error.absolute_path])
     if errors:
@@ -77,7 +99,6 @@ def parse_json(text: str, name: SchemaName) -> Any:
             Fault(_path(error.absolute_path), _shortened(error.message), f"see the schema {name}.json")
             for error in errors
         )
-    return value
 
 
 def _parse(text: str) -> Any:

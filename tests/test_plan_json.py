@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +41,7 @@ def strict_schema() -> dict[str, Any]:
         copy = {key: closed(item) for key, item in value.items()}
         return copy | {"additionalProperties": False} if "properties" in copy and "type" in copy else copy
 
-    schema: dict[str, Any] = closed(load_schema("plan-1"))
+    schema: dict[str, Any] = closed(load_schema("plan-2"))
     return schema
 
 
@@ -51,15 +51,16 @@ def assert_equal(found: FarmPlan, expected: FarmPlan) -> None:
         expected.fleet,
         expected.fleet.assumptions,
     )
-    for name in ("planner", "seed", "elapsed_s", "lower_bound", "gap_percent", "separation"):
+    for name in ("planner", "seed", "reason", "is_interrupted", "lower_bound_s", "gap_s_percent", "separation"):
         assert getattr(found.solution, name) == getattr(expected.solution, name)
     assert found.solution.plan.routes == expected.solution.plan.routes
     assert np.array_equal(found.solution.plan.route_lengths, expected.solution.plan.route_lengths)
     assert found.solution.plan.violations == expected.solution.plan.violations
+    assert found.violations == expected.violations
 
 
 def test_the_shipped_schemas_are_schemas() -> None:
-    for name in ("plan-1", "qgroundcontrol-plan"):
+    for name in ("plan-1", "plan-2", "qgroundcontrol-plan"):
         jsonschema.Draft202012Validator.check_schema(load_schema(name))
 
 
@@ -72,7 +73,7 @@ def property_names(schema: Any) -> Iterator[str]:
 
 def test_the_reference_names_every_property_of_the_schema() -> None:
     text = (Path(__file__).parents[1] / "docs" / "reference" / "json.md").read_text(encoding="utf-8")
-    missing = [name for name in property_names(load_schema("plan-1")) if name not in text]
+    missing = [name for name in property_names(load_schema("plan-2")) if name not in text]
     assert missing == []
 
 
@@ -80,22 +81,60 @@ def test_a_written_plan_fits_the_schema_and_says_what_was_planned(tmp_path: Path
     farm_plan = two_drones()
     content = written(tmp_path, farm_plan)
     jsonschema.validate(content, strict_schema())
-    assert content["schema"] == "pondhop-plan/1"
-    plan = farm_plan.solution.plan
-    assert content["summary"]["max_route_length_m"] == plan.max_route_length
-    assert content["gap_percent"] == pytest.approx(plan.max_route_length - 100)  # above a bound of 100 m
+    assert content["schema"] == "pondhop-plan/2"
+    plan, fleet = farm_plan.solution.plan, farm_plan.fleet
+    assert content["summary"]["makespan_s"] == plan.makespan_s
+    assert content["gap_percent"] == pytest.approx(plan.makespan_s - 100)  # above a bound of 100 s
     first, second = content["routes"]
     assert (first["drone"], second["drone"]) == (1, 2)
-    assert [stop["pond"] for stop in second["stops"]] == [4, 3]
-    assert [stop["id"] for stop in second["stops"]] == ["P4", "P3"]
+    (trip,) = second["trips"]
+    assert [stop["pond"] for stop in trip["stops"]] == [4, 3]
+    assert [stop["id"] for stop in trip["stops"]] == ["P4", "P3"]
+    # The second drone takes off some seconds after the first, and all its times are told by one clock.
+    assert trip["departure_s"] == fleet.takeoff_interval_s
+    assert trip["arrival_s"] == pytest.approx(fleet.takeoff_interval_s + second["duration_s"])
+    assert content["summary"]["all_back_s"] == max(route["trips"][0]["arrival_s"] for route in content["routes"])
     for route in content["routes"]:
-        legs = [stop["leg_length_m"] for stop in route["stops"]] + [route["return_leg_length_m"]]
+        (trip_of_route,) = route["trips"]
+        legs = [stop["leg_length_m"] for stop in trip_of_route["stops"]] + [trip_of_route["return_leg_length_m"]]
         assert sum(legs) == pytest.approx(route["length_m"])
+        assert sum(route["energy_by_phase_wh"].values()) == pytest.approx(route["energy_wh"])
     # From the pond north-east of the depot to its neighbour 0.001 degrees of longitude west: 89 m at 37 degrees.
-    stop = second["stops"][1]
+    stop = trip["stops"][1]
     assert stop["leg_length_m"] == pytest.approx(89.0, abs=0.1)
-    assert stop["arrival_s"] == pytest.approx(second["stops"][0]["departure_s"] + stop["leg_length_m"] / 5 + 3)
-    assert content["fleet"]["assumptions"] == list(farm_plan.fleet.assumptions)
+    flown_s = stop["leg_length_m"] / fleet.speed_m_s + fleet.leg_stop_s
+    assert stop["arrival_s"] == pytest.approx(trip["stops"][0]["departure_s"] + flown_s)
+    assert content["fleet"]["assumptions"] == list(fleet.assumptions)
+    assert "elapsed_s" not in content
+
+
+def test_every_field_of_farm_and_fleet_is_in_the_file(tmp_path: Path) -> None:
+    content = written(tmp_path, two_drones())
+    assert {field.name for field in fields(Farm)} == set(content["farm"])
+    assert {field.name for field in fields(Pond)} == set(content["farm"]["ponds"][0])
+    assert {field.name for field in fields(Fleet)} == set(content["fleet"])
+
+
+RELEASES = Path(__file__).parent / "data" / "releases"
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in RELEASES.glob("plan-*.json")))
+def test_a_file_of_every_released_version_stays_readable(name: str) -> None:
+    content = json.loads((RELEASES / name).read_text())
+    farm_plan = read_plan_json(RELEASES / name)
+    assert [pond.id for pond in farm_plan.farm.ponds] == [pond["id"] for pond in content["farm"]["ponds"]]
+    assert farm_plan.fleet.sampling == content["fleet"]["sampling"]
+    assert farm_plan.solution.plan.makespan_s == pytest.approx(content["summary"]["makespan_s"])
+    assert farm_plan.is_feasible is content["summary"]["is_feasible"]
+
+
+def test_the_file_of_0_1_0_has_its_own_times_and_a_note() -> None:
+    farm_plan = read_plan_json(RELEASES / "plan-0.1.0.json")
+    # Landing 7 / 0.5 + 2.4, dwell 8, climb 6.7 s; legs d / 5 + 3 s; no take-off, no way home.
+    assert farm_plan.solution.problem.service_durations_s.tolist()[1] == pytest.approx(16.4 + 8 + 6.7)
+    assert farm_plan.solution.plan.makespan_s == pytest.approx(349.612, abs=1e-3)
+    assert [violation.kind for violation in farm_plan.violations] == ["too_slow", "too_slow"]
+    assert "version 0.1" in farm_plan.notes[-1]
 
 
 def test_a_plan_with_everything_survives_the_round_trip(tmp_path: Path) -> None:
@@ -114,10 +153,13 @@ def test_a_plan_with_everything_survives_the_round_trip(tmp_path: Path) -> None:
     farm_plan = replace(farm_plan, solution=solution)
     content = written(tmp_path, farm_plan)
     jsonschema.validate(content, strict_schema())
-    assert content["unserved"] == [{"pond": 2, "id": "3"}]
-    assert content["violations"] == ["pond 2 is not visited", "2 routes for 1 drones"]
-    assert content["separation"] == {"overlap": 0.0, "num_crossings": 0}
-    assert [note[:10] for note in content["notes"]] == ["A note.", "Splashdown"]
+    assert [(item["pond"], item["id"]) for item in content["unserved"]] == [(2, "3")]
+    assert [(item["kind"], item["message"]) for item in content["violations"]] == [
+        ("unserved", "pond 3 is not visited"),
+        ("too_many_routes", "there are 2 routes for 1 drone"),
+    ]
+    assert content["separation"] == {"overlap": 0.0, "num_crossings": 0, "num_depot_leg_crossings": 0}
+    assert content["notes"] == ["A note."]
     assert_equal(read_plan_json(tmp_path / "plan.json"), farm_plan)
 
 
@@ -142,9 +184,8 @@ def test_any_plan_survives_the_round_trip(farm_plan: FarmPlan, tmp_path_factory:
 
 def test_a_bound_of_zero_has_no_gap(tmp_path: Path) -> None:
     farm_plan = two_drones()
-    farm_plan = replace(farm_plan, solution=replace(farm_plan.solution, lower_bound=0.0))
+    farm_plan = replace(farm_plan, solution=replace(farm_plan.solution, lower_bound_s=0.0))
     assert written(tmp_path, farm_plan)["gap_percent"] is None
-    assert read_plan_json(tmp_path / "plan.json").solution.gap_percent is None
 
 
 def faults_of(tmp_path: Path, content: dict[str, Any]) -> dict[str, str]:
@@ -160,24 +201,24 @@ def test_everything_that_breaks_the_schema_is_told(tmp_path: Path) -> None:
     content = written(tmp_path, two_drones())
     content["schema"] = "pondhop-plan/9"
     content["farm"]["depot"] = [-89.0, 137.0]
-    content["routes"][1]["stops"][0]["arrival_s"] = "soon"
+    content["routes"][1]["trips"][0]["stops"][0]["arrival_s"] = "soon"
     del content["fleet"]["speed_m_s"]
     faults = faults_of(tmp_path, content)
-    assert set(faults) == {"schema", "farm.depot[1]", "routes[1].stops[0].arrival_s", "fleet"}
+    assert set(faults) == {"schema", "farm.depot[1]", "routes[1].trips[0].stops[0].arrival_s", "fleet"}
     assert faults["fleet"] == "'speed_m_s' is a required property"
 
 
 def test_everything_that_the_evaluator_denies_is_told(tmp_path: Path) -> None:
     content = written(tmp_path, two_drones())
     content["summary"]["max_route_length_m"] -= 1
-    content["routes"][1]["stops"][0]["departure_s"] += 5
-    content["routes"][0]["stops"][2]["id"] = "P9"
+    content["routes"][1]["trips"][0]["stops"][0]["departure_s"] += 5
+    content["routes"][0]["trips"][0]["stops"][2]["id"] = "P9"
     content["routes"][0]["drone"] = 2
-    content["unserved"] = [{"pond": 0, "id": "P0"}]
+    content["unserved"] = [{"pond": 0, "id": "P0", "reason": "", "remedies": []}]
     assert set(faults_of(tmp_path, content)) == {
         "summary.max_route_length_m",
-        "routes[1].stops[0].departure_s",
-        "routes[0].stops[2].id",
+        "routes[1].trips[0].stops[0].departure_s",
+        "routes[0].trips[0].stops[2].id",
         "routes[0].drone",
         "unserved",
     }
@@ -193,8 +234,8 @@ def test_numbers_rounded_to_millimetres_are_accepted(tmp_path: Path) -> None:
 
 def test_a_pond_that_does_not_exist_is_told(tmp_path: Path) -> None:
     content = written(tmp_path, two_drones())
-    content["routes"][0]["stops"][1]["pond"] = 5
-    assert faults_of(tmp_path, content) == {"routes[0].stops[1].pond": "there is no pond 5"}
+    content["routes"][0]["trips"][0]["stops"][1]["pond"] = 5
+    assert faults_of(tmp_path, content) == {"routes[0].trips[0].stops[1].pond": "there is no pond 5"}
 
 
 def test_a_fleet_out_of_range_is_told_with_its_place(tmp_path: Path) -> None:

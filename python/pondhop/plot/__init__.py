@@ -1,0 +1,23 @@
+"""Pictures of plans, in the style of the paper's figures 2 and 3: one function per figure.
+
+Every function draws on the axes it is given or on a figure of its own, returns the axes and shows nothing.
+`save_figure` writes them.
+"""
+
+from pondhop.plot.canvas import draw_areas, prepared_axes, save_figure
+from pondhop.plot.look import LOOKS, Look, Theme
+from pondhop.plot.plans import plot_clusters, plot_plan, plot_solution
+from pondhop.plot.routes import draw_depot
+
+__all__ = [
+    "LOOKS",
+    "Look",
+    "Theme",
+    "draw_areas",
+    "draw_depot",
+    "plot_clusters",
+    "plot_plan",
+    "plot_solution",
+    "prepared_axes",
+    "save_figure",
+]

@@ -1,0 +1,150 @@
+"""The sheet that a plan is drawn on: axes of equal aspect, areas, scale, north, title and legend; and its file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pondhop.plot.fonts import lettering
+from pondhop.plot.look import Look
+from pondhop.units import METRES_PER_FOOT, METRES_PER_MILE, Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Points = NDArray[np.float64]
+"""Positions, shape (n, 2)."""
+
+_MAP_SIZE_IN, _MAX_SIDE_IN = 6.5, 10.0
+"""Side of a square map, and the longest side of any, in inches."""
+
+
+def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
+    """Write the figure of some axes; the same figure gives the same bytes.
+
+    Parameters
+    ----------
+    ax
+        As a function of this module returned them.
+    path
+        The file, ``.png`` or ``.svg``; missing folders are made.
+
+    Raises
+    ------
+    ValueError
+        If matplotlib knows no such format, or the axes belong to no figure.
+    OSError
+        If the file cannot be written.
+    """
+    import matplotlib as mpl
+
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    metadata = {"Date": None} if path.suffix.lower() == ".svg" else None
+    figure = ax.get_figure(root=True)
+    if figure is None:
+        raise ValueError("the axes belong to no figure")
+    with mpl.rc_context({"svg.hashsalt": "pondhop"}):
+        figure.savefig(path, dpi=160, metadata=metadata, bbox_inches="tight", pad_inches=0.2)
+
+
+def prepared_axes(ax: Axes | None, extent: Points, look: Look) -> Axes:
+    """Return axes of equal aspect around ``extent``, shape (n, 2); a figure of their own gets a shape that suits it."""
+    (west, south), (east, north) = extent.min(axis=0), extent.max(axis=0)
+    margin = 0.04 * max(east - west, north - south) or 1.0
+    width, height = east - west + 2 * margin, north - south + 2 * margin
+    if ax is None:
+        ax = _figure_axes(width / height)
+    ax.figure.set_facecolor(look.background)
+    ax.set_facecolor(look.background)
+    ax.set_aspect("equal", anchor="NW")
+    ax.set_xlim(west - margin, east + margin)
+    ax.set_ylim(south - margin, north + margin)
+    ax.set_xticks([])
+    ax.set_yticks([])
+    ax.spines[:].set_visible(False)
+    return ax
+
+
+def _figure_axes(aspect: float) -> Axes:
+    from matplotlib.figure import Figure
+
+    # Legend and title stand outside; `save_figure` makes room for them.
+    width, height = _MAP_SIZE_IN * np.sqrt(aspect), _MAP_SIZE_IN / np.sqrt(aspect)
+    scale = min(1.0, _MAX_SIDE_IN / max(width, height))
+    return Figure(figsize=(scale * width, scale * height)).add_axes((0, 0, 1, 1))
+
+
+def draw_areas(ax: Axes, rings: Sequence[Points], **style: object) -> None:
+    """Fill polygons, each of shape (k, 2)."""
+    from matplotlib.collections import PolyCollection
+
+    if rings:
+        ax.add_collection(PolyCollection(list(rings), **style), autolim=False)  # type: ignore[arg-type]
+
+
+def write_legend(ax: Axes, look: Look) -> None:
+    """Write the legend right of the map."""
+    ax.legend(
+        loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0, frameon=False, labelcolor=look.ink, fontsize=9
+    )
+
+
+def draw_scale_bar(ax: Axes, look: Look, units: Units) -> None:
+    """Draw a bar of a round length below the map, about a fifth of its width, and an arrow to the north beside it."""
+    west, east = ax.get_xlim()
+    south, north = ax.get_ylim()
+    wanted_m = (east - west) / 5
+    unit_m, unit = 1.0, "m"
+    if units == "us":
+        unit_m, unit = (METRES_PER_MILE, "mi") if wanted_m > METRES_PER_MILE else (METRES_PER_FOOT, "ft")
+    power = 10.0 ** np.floor(np.log10(wanted_m / unit_m))
+    length = max(step * power for step in (1, 2, 5) if step * power * unit_m <= wanted_m)
+    length_m = length * unit_m
+    room = 0.07 * (north - south)
+    ax.set_ylim(south - room, north)
+    bar_y = south - 0.35 * room
+    ax.plot([west, west + length_m], [bar_y, bar_y], color=look.ink, linewidth=2.0, solid_capstyle="butt", zorder=6)
+    text = f"{length / 1000:g} km" if unit == "m" and length >= 1000 else f"{length:g} {unit}"
+    gap = 0.01 * (east - west)
+    ax.text(west + length_m + gap, bar_y, text, ha="left", va="center", fontsize=9, color=look.ink)
+    ax.text(0.985, 1.0, "N", transform=ax.transAxes, ha="center", va="top", fontsize=9, color=look.ink, zorder=6)
+    ax.annotate(
+        "",
+        xy=(0.985, 0.965),
+        xytext=(0.985, 0.88),
+        xycoords="axes fraction",
+        arrowprops={"arrowstyle": "-|>", "color": look.ink, "shrinkA": 0, "shrinkB": 0},
+        zorder=6,
+    )
+
+
+def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look) -> None:
+    """Write a name and below it lines of facts; letters that no font of the machine has are replaced."""
+    letters = lettering([name])
+    ax.set_title(
+        letters.written(name),
+        loc="left",
+        fontsize=13,
+        fontweight="bold",
+        fontfamily=list(letters.families),
+        parse_math=False,
+        color=look.ink,
+        pad=8 + 14 * len(lines),
+    )
+    ax.annotate(
+        "\n".join(" · ".join(parts) for parts in lines),
+        xy=(0, 1),
+        xycoords="axes fraction",
+        xytext=(0, 8),
+        textcoords="offset points",
+        ha="left",
+        va="bottom",
+        fontsize=9.5,
+        color=look.faint_ink,
+    )

@@ -1,0 +1,216 @@
+"""Whole pictures, one function each: a plan of a real farm, of a research farm, and what HPP did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pondhop._core import LocalFrame, Problem, evaluate
+from pondhop.palette import ROUTE_COLOURS, route_colour
+from pondhop.plot.canvas import Points, draw_areas, draw_scale_bar, prepared_axes, write_legend, write_title
+from pondhop.plot.look import LOOKS, Theme
+from pondhop.plot.names import draw_names
+from pondhop.plot.routes import LINE_STYLES, MARKERS, draw_depot, draw_routes, draw_shading_key, marker_size
+from pondhop.solution import FarmPlan
+from pondhop.units import Units, clock_text, counted, duration_text, energy_text, length_text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from pondhop.places import Ring
+
+Cluster = tuple[Sequence[int], Sequence[int], Points]
+"""Ponds, hull and path of one cluster of HPP."""
+
+
+def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "light", units: Units = "metric") -> Axes:
+    """Draw a plan of a real farm: ponds with their names, depot, areas, routes, when each drone starts and is back.
+
+    Parameters
+    ----------
+    farm_plan
+        What to draw.
+    ax
+        Where to; a new figure if `None`.
+    theme
+        ``dark`` for reading at night.
+    units
+        Of lengths: ``metric`` or ``us``.
+
+    Returns
+    -------
+    Axes
+        In metres east and north of the depot.
+    """
+    farm, solution = farm_plan.farm, farm_plan.solution
+    plan = solution.plan
+    frame = LocalFrame(*farm.depot)
+    look = LOOKS[theme]
+    outlines = [_local(frame, ring) for pond in farm.ponds for ring in pond.outline[:1]]
+    fences = [_local(frame, rings[0]) for rings in farm.fences]
+    zones = [_local(frame, rings[0]) for rings in farm.no_fly]
+    extent = np.vstack([solution.problem.depot[None], solution.problem.ponds, *outlines, *fences, *zones])
+    ax = prepared_axes(ax, extent, look)
+    draw_areas(ax, outlines, facecolor=look.water, edgecolor=look.shore, linewidth=0.6, zorder=1)
+    draw_areas(
+        ax, fences, facecolor="none", edgecolor=look.outline, linewidth=1.0, linestyle="--", zorder=1, label="fence"
+    )
+    draw_areas(
+        ax, zones, facecolor="none", edgecolor=look.no_fly, linewidth=1.0, hatch="////", zorder=1, label="no-fly zone"
+    )
+    draw_routes(
+        ax, solution.problem, plan, [_drone_label(farm_plan, drone, units) for drone in range(len(plan.routes))], look
+    )
+    draw_shading_key(ax, look)
+    draw_scale_bar(ax, look, units)
+    draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look)
+    write_legend(ax, look)
+    write_title(ax, farm.name, _facts(farm_plan, units), look)
+    return ax
+
+
+def _drone_label(farm_plan: FarmPlan, drone: int, units: Units) -> str:
+    """What the legend says of a route: ponds, length, energy, and when the drone starts and is back."""
+    plan = farm_plan.solution.plan
+    start_s = farm_plan.takeoff_times_s[drone]
+    back_s = start_s + float(plan.route_durations_s[drone])
+    return ", ".join(
+        [
+            counted(len(plan.routes[drone]), "pond"),
+            length_text(float(plan.route_lengths[drone]), units),
+            energy_text(float(plan.route_energies_j[drone])),
+            f"starts {clock_text(start_s)}, back {clock_text(back_s)}",
+        ]
+    )
+
+
+def _facts(farm_plan: FarmPlan, units: Units) -> list[list[str]]:
+    solution, plan = farm_plan.solution, farm_plan.solution.plan
+    lines = [
+        [
+            counted(len(farm_plan.farm.ponds), "pond"),
+            counted(len(plan.routes), "drone"),
+            f"all back after {duration_text(farm_plan.all_back_s)}",
+            f"longest route {length_text(plan.max_route_length, units)}",
+            f"total {length_text(plan.total_length, units)}",
+        ]
+    ]
+    if solution.separation is not None:
+        crossings = counted(solution.separation.num_crossings, "crossing")
+        on_ways = solution.separation.num_depot_leg_crossings
+        lines.append([f"{crossings} of routes between ponds, {on_ways} more on the ways out and home"])
+    if not plan.is_feasible:
+        lines.append([f"NOT TO BE FLOWN: {counted(len(plan.violations), 'rule')} broken"])
+    return lines
+
+
+def plot_solution(
+    problem: Problem,
+    routes: Sequence[Sequence[int]],
+    boundary: Points | None = None,
+    ax: Axes | None = None,
+    *,
+    theme: Theme = "light",
+) -> Axes:
+    """Draw routes over a research farm, lengths in its own units.
+
+    Parameters
+    ----------
+    problem
+        Depot and ponds.
+    routes
+        Pond indices per route in flying order, the depot implied at both ends.
+    boundary
+        The farm's outline, shape (k, 2), or `None`.
+    ax
+        Where to; a new figure if `None`.
+    theme
+        ``dark`` for reading at night.
+
+    Returns
+    -------
+    Axes
+        In the units of the farm.
+
+    Raises
+    ------
+    InvalidInput
+        If a route names a pond that does not exist.
+    """
+    plan = evaluate(problem, routes)
+    look = LOOKS[theme]
+    outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
+    ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *outline]), look)
+    draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
+    labels = [
+        f"{length:.3f}, {counted(len(route), 'pond')}"
+        for route, length in zip(plan.routes, plan.route_lengths, strict=True)
+    ]
+    draw_routes(ax, problem, plan, labels, look)
+    parts = [f"longest route {plan.max_route_length:.3f}", f"total {plan.total_length:.3f}"]
+    write_legend(ax, look)
+    title = f"{counted(problem.num_ponds, 'pond')}, {counted(len(plan.routes), 'route')}"
+    write_title(ax, title, [parts], look)
+    return ax
+
+
+def plot_clusters(
+    problem: Problem,
+    clusters: Sequence[Cluster],
+    boundary: Points | None = None,
+    ax: Axes | None = None,
+    *,
+    theme: Theme = "light",
+) -> Axes:
+    """Draw what HPP did, as the paper's figure 2: ponds by cluster, their convex hulls and the back-and-forth paths.
+
+    Parameters
+    ----------
+    problem
+        Depot and ponds.
+    clusters
+        Per cluster the pond indices, those at the corners of the hull, and the corners of the path, shape (k, 2), as
+        `pondhop._core.hpp_clusters` returns them.
+    boundary
+        The farm's outline, shape (k, 2), or `None`.
+    ax
+        Where to; a new figure if `None`.
+    theme
+        ``dark`` for reading at night.
+
+    Returns
+    -------
+    Axes
+        In the units of the farm.
+    """
+    look = LOOKS[theme]
+    outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
+    paths = [path for _, _, path in clusters]
+    ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *paths, *outline]), look)
+    draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
+    for index, (ponds, hull, path) in enumerate(clusters):
+        colour, cycle = route_colour(index), index // len(ROUTE_COLOURS)
+        corners = problem.ponds[hull]
+        draw_areas(ax, [corners], facecolor=(colour, 0.10), edgecolor=(colour, 0.6), linewidth=1.0, zorder=2)
+        ax.plot(*path.T, color=colour, linewidth=1.4, linestyle=LINE_STYLES[cycle % 4], zorder=3)
+        ax.plot(
+            *problem.ponds[ponds].T,
+            color=colour,
+            linestyle="",
+            marker=MARKERS[cycle % 4],
+            markersize=marker_size(problem),
+            label=f"{index + 1}: {len(ponds)} ponds",
+            zorder=4,
+        )
+    draw_depot(ax, problem, look)
+    write_legend(ax, look)
+    write_title(
+        ax, f"{problem.num_ponds} ponds, {len(clusters)} clusters", [["convex hulls", "back-and-forth paths"]], look
+    )
+    return ax
+
+
+def _local(frame: LocalFrame, ring: Ring) -> Points:
+    return frame.to_local(np.array(ring, dtype=np.float64))
