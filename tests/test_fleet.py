@@ -1,7 +1,9 @@
 """Fleet files and the time on station."""
 
-from dataclasses import replace
+import math
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 
 from pondhop.errors import InvalidInput
 from pondhop.fleet import Fleet, read_fleet
+from pondhop.fleet.settings import NUMBERS
 
 
 def faults_of(path: Path) -> list[tuple[str, str]]:
@@ -18,11 +21,11 @@ def faults_of(path: Path) -> list[tuple[str, str]]:
 
 
 def test_a_hover_dip_takes_what_was_measured() -> None:
-    assert Fleet(3, dwell_s=5.0).service_s == pytest.approx(14.8)
+    assert Fleet(3, dwell_s=5.0).service_s == pytest.approx(14.87, abs=0.01)
 
 
 def test_a_splashdown_takes_what_was_measured() -> None:
-    assert Fleet(3, sampling="splashdown", dwell_s=5.0).service_s == pytest.approx(16.4 + 5.0 + 6.7)
+    assert Fleet(3, sampling="splashdown", dwell_s=5.0).service_s == pytest.approx(17.1 + 5.0 + 6.8)
 
 
 def test_a_metre_of_height_costs_descent_and_climb() -> None:
@@ -44,8 +47,8 @@ def test_a_dip_above_the_transit_height_is_refused() -> None:
     assert Fleet(1, dip_height_m=7.0, sampling="splashdown").dip_height_m == 7.0
 
 
-@given(st.floats(2.1, 121.9), st.floats(0.0, 600.0), st.sampled_from(["hover-dip", "splashdown"]))
-def test_time_on_station_exceeds_the_dwell(height_m: float, dwell_s: float, sampling: str) -> None:
+@given(st.floats(2.1, 121.9), st.integers(1, 600), st.sampled_from(["hover-dip", "splashdown"]))
+def test_time_on_station_exceeds_the_dwell(height_m: float, dwell_s: int, sampling: str) -> None:
     fleet = Fleet(1, transit_height_m=height_m, dwell_s=dwell_s, sampling=sampling)  # type: ignore[arg-type]
     assert fleet.service_s > dwell_s
 
@@ -55,8 +58,8 @@ def test_what_the_file_leaves_out_is_an_assumption(tmp_path: Path) -> None:
     path.write_text('num_drones = 3\nspeed_m_s = 5.0\nsampling = "splashdown"\nmax_route_duration_s = 900\n')
     fleet = read_fleet(path)
     assert fleet == Fleet(3, sampling="splashdown", max_route_duration_s=900)
-    assert fleet.assumptions == ("transit_height_m", "leg_stop_s", "dwell_s", "dip_height_m")
-    assert replace(fleet, dwell_s=9.0).assumptions == ("transit_height_m", "leg_stop_s", "dip_height_m")
+    assert fleet.assumptions == ("transit_height_m", "dwell_s", "dip_height_m")
+    assert replace(fleet, dwell_s=9.0).assumptions == ("transit_height_m", "dip_height_m")
 
 
 def test_a_fleet_made_directly_assumes_its_defaults() -> None:
@@ -105,3 +108,45 @@ def test_any_bytes_give_a_fleet_or_faults(tmp_path_factory: pytest.TempPathFacto
     except InvalidInput as error:
         num_faults = len(error.faults)
     assert (num_faults > 0) != (num_drones > 0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "path", "message"),
+    [
+        ({"dwell_s": 0.4}, "dwell_s", "no whole number of seconds"),
+        ({"dwell_s": 0.0, "sampling": "splashdown"}, "dwell_s", "no stay"),
+        ({"num_drones": 40, "layer_spacing_m": 3.0}, "layer_spacing_m", "comes home at 132 m"),
+        ({"battery_wh": 0.0}, "battery_wh", "out of range"),
+        ({"reserve_percent": 99.0}, "reserve_percent", "out of range"),
+    ],
+)
+def test_one_wrong_setting_is_one_fault(settings: dict[str, Any], path: str, message: str) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        Fleet(**{"num_drones": 3} | settings)
+    (fault,) = caught.value.faults
+    assert fault.path == path
+    assert message in fault.message
+
+
+def test_the_reserve_is_taken_once() -> None:
+    fleet = Fleet(1, battery_wh=100.0, reserve_percent=20.0, health_percent=90.0)
+    assert fleet.usable_energy_j == pytest.approx(100 * 3600 * 0.9 * 0.8)
+    assert Fleet(1).usable_energy_j == math.inf
+
+
+def test_drones_come_home_in_layers_of_their_own() -> None:
+    assert [Fleet(4).return_height_of(drone) for drone in range(4)] == [15.0, 18.0, 21.0, 24.0]
+    # No autopilot descends for the way home, and any number of drones fits below the highest allowed flight.
+    assert Fleet(2, transit_height_m=30.0).return_height_of(0) == 30.0
+    assert Fleet(100).return_height_of(99) == pytest.approx(121.9)
+    assert Fleet(2, layer_spacing_m=0.0).return_height_of(1) == 15.0
+    # The plan counts with the highest layer: 3 m more take 3 / 2.5 s up and 3 / 1.5 s down.
+    assert Fleet(2).way_home_fixed_s - Fleet(1).way_home_fixed_s == pytest.approx(3 / 2.5 + 3 / 1.5)
+
+
+def test_every_setting_has_a_range_and_a_source() -> None:
+    names = {item.name for item in fields(Fleet)} - {"assumptions", "sampling"}
+    assert names == set(NUMBERS)
+    for name in names:
+        default = getattr(Fleet(1), name)
+        assert default is None or NUMBERS[name].least <= default <= NUMBERS[name].most

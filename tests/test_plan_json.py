@@ -102,7 +102,7 @@ def test_a_written_plan_fits_the_schema_and_says_what_was_planned(tmp_path: Path
     # From the pond north-east of the depot to its neighbour 0.001 degrees of longitude west: 89 m at 37 degrees.
     stop = trip["stops"][1]
     assert stop["leg_length_m"] == pytest.approx(89.0, abs=0.1)
-    flown_s = stop["leg_length_m"] / fleet.speed_m_s + fleet.leg_stop_s
+    flown_s = stop["leg_length_m"] / fleet.speed_m_s + fleet.stop_s
     assert stop["arrival_s"] == pytest.approx(trip["stops"][0]["departure_s"] + flown_s)
     assert content["fleet"]["assumptions"] == list(fleet.assumptions)
     assert "elapsed_s" not in content
@@ -113,6 +113,18 @@ def test_every_field_of_farm_and_fleet_is_in_the_file(tmp_path: Path) -> None:
     assert {field.name for field in fields(Farm)} == set(content["farm"])
     assert {field.name for field in fields(Pond)} == set(content["farm"]["ponds"][0])
     assert {field.name for field in fields(Fleet)} == set(content["fleet"])
+
+
+def test_energy_left_and_energy_home_are_told_at_every_stop(tmp_path: Path) -> None:
+    farm_plan = make_plan(make_farm(), Fleet(num_drones=1, battery_wh=200, reserve_percent=25), [[0, 1, 2, 3, 4]])
+    (route,) = written(tmp_path, farm_plan)["routes"]
+    (trip,) = route["trips"]
+    assert trip["usable_energy_wh"] == pytest.approx(150.0)
+    left = [stop["energy_left_wh"] for stop in trip["stops"]]
+    assert left == sorted(left, reverse=True)
+    # What is left after the last stop is for the way home, and what then remains is what the route does not take.
+    remaining = left[-1] - trip["stops"][-1]["energy_home_wh"]
+    assert remaining == pytest.approx(150.0 - route["energy_wh"])
 
 
 RELEASES = Path(__file__).parent / "data" / "releases"

@@ -178,7 +178,7 @@ def _print_assumptions(console: Console, farm_plan: FarmPlan, units: Units) -> N
     fleet = farm_plan.fleet
     console.print(
         f"Fleet: {speed_text(fleet.speed_m_s, units)}, {height_text(fleet.transit_height_m, units)} high, "
-        f"{fleet.sampling} with {fleet.service_s:.1f} s a pond, {fleet.leg_stop_s:g} s a leg to stop and start."
+        f"{fleet.sampling} with {fleet.service_s:.1f} s a pond, {fleet.stop_s:.3g} s a leg to stop and start."
     )
     if fleet.assumptions:
         names = ", ".join(fleet.assumptions)

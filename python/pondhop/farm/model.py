@@ -73,15 +73,20 @@ class Farm:
             Pond i is ``ponds[i]``.
         """
         sampling_points = np.array([pond.sampling_point for pond in self.ponds], dtype=np.float64)
+        service_s = fleet.service_s
+        durations_s = [service_s if pond.service_s is None else pond.service_s for pond in self.ponds]
         return Problem(
             (0.0, 0.0),
             LocalFrame(*self.depot).to_local(sampling_points),
             fleet.num_drones,
-            service_durations_s=np.array(
-                [fleet.service_s if pond.service_s is None else pond.service_s for pond in self.ponds]
-            ),
+            service_durations_s=durations_s,
+            service_energies_j=[fleet.service_energy_j(duration_s) for duration_s in durations_s],
             speed_m_s=fleet.speed_m_s,
-            leg_stop_s=fleet.leg_stop_s,
+            leg_stop_s=fleet.stop_s,
+            takeoff_s=fleet.takeoff_s,
+            way_home_speed_m_s=fleet.return_speed_m_s,
+            way_home_fixed_s=fleet.way_home_fixed_s,
+            energy=fleet.energy,
             max_length_m=np.inf if fleet.max_route_length_m is None else fleet.max_route_length_m,
             max_duration_s=np.inf if fleet.max_route_duration_s is None else fleet.max_route_duration_s,
         )

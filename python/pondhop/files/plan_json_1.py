@@ -7,6 +7,7 @@ checked by what it was made with; the plan that comes back has them, with a note
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -153,6 +154,8 @@ def _farm(content: Mapping[str, Any]) -> Farm:
 
 def _fleet(content: Mapping[str, Any]) -> Fleet:
     settings = {key: content[key] for key in _FLEET_KEYS}
+    # Version 1 planned with times on the water that no mission can hold; what was planned is in the problem.
+    settings["dwell_s"] = max(1.0, float(math.ceil(content["dwell_s"])))
     try:
         return Fleet(**settings, assumptions=tuple(content["assumptions"]))
     except InvalidInput as error:

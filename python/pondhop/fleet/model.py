@@ -1,0 +1,216 @@
+"""A fleet as a value: how many drones, how they fly, how they sample, what their batteries hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Literal, get_args
+
+from pondhop._core import Energy
+from pondhop.errors import Fault, InvalidInput
+from pondhop.fleet import times
+from pondhop.fleet.settings import DECISIVE, MAX_HEIGHT_M, NUMBERS
+
+SamplingStyle = Literal["hover-dip", "splashdown"]
+
+_JOULES_PER_WATT_HOUR = 3600.0
+
+LAYER_SPACING_M = 3.0
+"""How much higher each drone comes home than the one before it, where nothing else is said."""
+
+
+@dataclass(frozen=True)
+class Fleet:
+    """A fleet of equal drones. Where each default comes from stands in `pondhop.fleet.settings`.
+
+    Attributes
+    ----------
+    num_drones
+        How many drones there are.
+    speed_m_s
+        Ground speed in cruise.
+    transit_height_m
+        Height above ground between ponds.
+    leg_stop_s
+        What stopping and starting adds to every leg; ``None``: by sampling style and speed, as measured.
+    sampling
+        How a pond is sampled: ``hover-dip`` lowers a probe on a line, ``splashdown`` lands on the water.
+    dwell_s
+        Time the probe stays in the water, in whole seconds: autopilots store no others.
+    dip_height_m
+        Height above ground at which a drone holds while its probe hangs in the water (``hover-dip``).
+    max_route_length_m, max_route_duration_s
+        What one drone can fly; ``None`` where nothing limits it.
+    takeoff_interval_s, layer_spacing_m
+        What keeps drones apart at home: the time between two take-offs, and how much higher each drone comes home than
+        the one before it; ``None``: 3 m, or less where so many drones would come home above the highest allowed flight.
+    battery_wh, reserve_percent, health_percent
+        What the battery of a drone holds when new and full, how much of that stays unused, and how much of it is left
+        with age. ``None``: unknown, and flight time is not checked.
+    return_speed_m_s, return_height_m, return_loiter_s, return_extra_s
+        The way home as the autopilot flies it (RTL): its speed, the height of the lowest drone, the wait above home,
+        and what turning and stopping take.
+    climb_speed_m_s, descent_speed_m_s, landing_speed_m_s, slow_landing_height_m
+        Vertical speeds; below the last height a landing is slow.
+    spool_up_s, climb_extra_s, landing_extra_s, fast_landing_extra_s, dip_extra_s, first_leg_extra_s, last_dip_extra_s
+        What is left of the measured times besides heights over speeds: see `pondhop.fleet.times`.
+    hover_power_w, drag_power_w_per_m3_s3, climb_power_w_per_m_s, descent_power_w_per_m_s
+        Power of hovering, what the third power of the airspeed adds, what a climb adds and a descent saves.
+    liftoff_power_w, touchdown_power_w, water_power_w
+        Power during ``climb_extra_s``, while a landing settles, and at rest on the water.
+    assumptions
+        Names of decisive settings that hold a default nobody confirmed. `read_fleet` names those absent from the file;
+        a fleet made directly names those equal to the default.
+
+    Raises
+    ------
+    InvalidInput
+        With every field that is out of range or of the wrong type.
+    """
+
+    num_drones: int
+    speed_m_s: float = 5.0
+    transit_height_m: float = 7.0
+    leg_stop_s: float | None = None
+    sampling: SamplingStyle = "hover-dip"
+    dwell_s: float = 5.0
+    dip_height_m: float = 2.0
+    max_route_length_m: float | None = None
+    max_route_duration_s: float | None = None
+    takeoff_interval_s: float = 10.0
+    layer_spacing_m: float | None = None
+    battery_wh: float | None = None
+    reserve_percent: float = 25.0
+    health_percent: float = 100.0
+    return_speed_m_s: float = 10.0
+    return_height_m: float = 15.0
+    return_loiter_s: float = 5.0
+    return_extra_s: float = 8.27
+    climb_speed_m_s: float = 2.5
+    descent_speed_m_s: float = 1.5
+    landing_speed_m_s: float = 0.5
+    slow_landing_height_m: float = 10.0
+    spool_up_s: float = 2.3
+    climb_extra_s: float = 4.0
+    landing_extra_s: float = 3.1
+    fast_landing_extra_s: float = 1.4
+    dip_extra_s: float = 4.54
+    first_leg_extra_s: float = 1.5
+    last_dip_extra_s: float = 1.3
+    hover_power_w: float = 354.2
+    drag_power_w_per_m3_s3: float = 0.028
+    climb_power_w_per_m_s: float = 12.3
+    descent_power_w_per_m_s: float = 10.3
+    liftoff_power_w: float = 302.0
+    touchdown_power_w: float = 123.0
+    water_power_w: float = 0.0
+    assumptions: tuple[str, ...] = field(default=DECISIVE, compare=False, kw_only=True)
+
+    def __post_init__(self) -> None:
+        values = {item.name: getattr(self, item.name) for item in fields(self) if item.name != "assumptions"}
+        faults = setting_faults({name: value for name, value in values.items() if value is not None})
+        if not faults:
+            faults = _combined_faults(self)
+        if faults:
+            raise InvalidInput(faults)
+        defaults = {item.name: item.default for item in fields(self)}
+        still_default = tuple(name for name in self.assumptions if getattr(self, name) == defaults[name])
+        object.__setattr__(self, "assumptions", still_default)
+
+    @property
+    def stop_s(self) -> float:
+        """What stopping and starting adds to a leg."""
+        return times.leg_stop_s(self)
+
+    @property
+    def takeoff_s(self) -> float:
+        """Time of the first take-off of a route, until the drone flies its first leg."""
+        return times.takeoff_s(self)
+
+    @property
+    def service_s(self) -> float:
+        """Time on station at one pond, from arriving above it at transit height to leaving from there."""
+        return times.sampling_s(self)
+
+    @property
+    def way_home_fixed_s(self) -> float:
+        """What the way home takes besides its length, for the drone that comes home highest."""
+        return times.way_home_fixed_s(self)
+
+    def return_height_of(self, drone: int) -> float:
+        """Return the height at which a drone comes home, in metres; drones count from 0.
+
+        The lowest comes at ``return_height_m``, but not below the transit height: an autopilot does not descend for
+        the way home.
+        """
+        lowest_m = max(self.return_height_m, self.transit_height_m)
+        spacing_m = self.layer_spacing_m
+        if spacing_m is None:
+            spacing_m = min(LAYER_SPACING_M, (MAX_HEIGHT_M - lowest_m) / max(1, self.num_drones - 1))
+        return lowest_m + drone * spacing_m
+
+    @property
+    def usable_energy_j(self) -> float:
+        """What a route may take from its battery: its capacity at its age, less the reserve; infinite if unknown."""
+        if self.battery_wh is None:
+            return math.inf
+        share = self.health_percent / 100 * (1 - self.reserve_percent / 100)
+        return self.battery_wh * _JOULES_PER_WATT_HOUR * share
+
+    @property
+    def energy(self) -> Energy:
+        """What flying takes from the battery, for the planning task."""
+        return Energy(
+            takeoff_j=times.takeoff_j(self),
+            leg_w=times.power_w(self, self.speed_m_s),
+            leg_stop_w=self.hover_power_w,
+            way_home_w=times.power_w(self, self.return_speed_m_s),
+            way_home_fixed_j=times.way_home_fixed_j(self),
+            usable_j=self.usable_energy_j,
+        )
+
+    def service_energy_j(self, service_s: float) -> float:
+        """Return what a time on station takes from the battery, in joules."""
+        return times.sampling_j(self, service_s)
+
+
+def setting_faults(settings: Mapping[str, object]) -> list[Fault]:
+    """Return what is wrong with settings, each for itself."""
+    faults = []
+    for name, value in settings.items():
+        if name == "sampling":
+            if value not in get_args(SamplingStyle):
+                action = f"use one of {', '.join(get_args(SamplingStyle))}"
+                faults.append(Fault(name, f"{value!r} is no way of sampling", action))
+            continue
+        least, most = NUMBERS[name].least, NUMBERS[name].most
+        is_whole = name == "num_drones"
+        kinds = (int,) if is_whole else (int, float)
+        if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value):
+            noun = "whole number" if is_whole else "number"
+            faults.append(Fault(name, f"{value!r} is no {noun}", f"give a {noun} from {least:g} to {most:g}"))
+        elif not least <= value <= most:
+            faults.append(Fault(name, f"{value!r} is out of range", f"give a value from {least:g} to {most:g}"))
+    return faults
+
+
+def _combined_faults(fleet: Fleet) -> list[Fault]:
+    """What is wrong with settings that are each in range."""
+    faults = []
+    if fleet.dwell_s != math.floor(fleet.dwell_s):
+        message = f"{fleet.dwell_s:g} s is no whole number of seconds, and autopilots store no other"
+        faults.append(Fault("dwell_s", message, f"give {math.ceil(fleet.dwell_s)}"))
+    elif fleet.dwell_s == 0 and fleet.sampling == "splashdown":
+        message = "0 s on the water is no stay: autopilots take a delay of 0 for a time of day"
+        faults.append(Fault("dwell_s", message, "give 1 second or more"))
+    if fleet.sampling == "hover-dip" and fleet.dip_height_m >= fleet.transit_height_m:
+        message = f"{fleet.dip_height_m:g} m is not below the transit height of {fleet.transit_height_m:g} m"
+        faults.append(Fault("dip_height_m", message, "dip lower or fly higher"))
+    highest_m = fleet.return_height_of(fleet.num_drones - 1)
+    if fleet.layer_spacing_m is not None and highest_m > MAX_HEIGHT_M:
+        most_m = (MAX_HEIGHT_M - fleet.return_height_of(0)) / max(1, fleet.num_drones - 1)
+        message = f"with {fleet.layer_spacing_m:g} m between drones the highest comes home at {highest_m:g} m"
+        action = f"give at most {math.floor(10 * most_m) / 10:g} m: nothing may fly above {MAX_HEIGHT_M} m"
+        faults.append(Fault("layer_spacing_m", message, action))
+    return faults

@@ -1,0 +1,76 @@
+"""The settings of a fleet: what each may be, and where its default comes from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Source = Literal["assumed", "measured", "published"]
+"""Where a default comes from.
+
+``measured``: on a simulated ArduCopter 4.7 with its default quadcopter of 3 kg, flying pond missions in calm air;
+``published``: the default of ArduPilot's parameter of that meaning; ``assumed``: somebody had to say a number.
+"""
+
+MAX_HEIGHT_M = 121.9
+"""Highest flight above ground: 400 feet, the limit of the rules for small drones in the USA."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What one number of a fleet may be.
+
+    Attributes
+    ----------
+    least, most
+        The range of sensible values.
+    source
+        Of the default.
+    """
+
+    least: float
+    most: float
+    source: Source
+
+
+NUMBERS = {
+    "num_drones": Setting(1, 10_000, "assumed"),
+    "speed_m_s": Setting(0.1, 50.0, "assumed"),
+    "transit_height_m": Setting(1.0, MAX_HEIGHT_M, "assumed"),
+    "dwell_s": Setting(0.0, 3_600.0, "assumed"),
+    "dip_height_m": Setting(0.1, MAX_HEIGHT_M, "assumed"),
+    "leg_stop_s": Setting(0.0, 600.0, "measured"),
+    "first_leg_extra_s": Setting(0.0, 600.0, "measured"),
+    "last_dip_extra_s": Setting(0.0, 600.0, "measured"),
+    "dip_extra_s": Setting(0.0, 600.0, "measured"),
+    "climb_speed_m_s": Setting(0.1, 20.0, "published"),
+    "descent_speed_m_s": Setting(0.1, 20.0, "published"),
+    "landing_speed_m_s": Setting(0.05, 10.0, "published"),
+    "slow_landing_height_m": Setting(0.0, MAX_HEIGHT_M, "published"),
+    "spool_up_s": Setting(0.0, 600.0, "measured"),
+    "climb_extra_s": Setting(0.0, 600.0, "measured"),
+    "landing_extra_s": Setting(0.0, 600.0, "measured"),
+    "fast_landing_extra_s": Setting(0.0, 600.0, "measured"),
+    "return_speed_m_s": Setting(0.1, 50.0, "published"),
+    "return_height_m": Setting(1.0, MAX_HEIGHT_M, "published"),
+    "return_loiter_s": Setting(0.0, 600.0, "published"),
+    "return_extra_s": Setting(0.0, 600.0, "measured"),
+    "layer_spacing_m": Setting(0.0, 50.0, "assumed"),
+    "takeoff_interval_s": Setting(0.0, 600.0, "assumed"),
+    "hover_power_w": Setting(0.0, 1e5, "measured"),
+    "drag_power_w_per_m3_s3": Setting(0.0, 1e4, "measured"),
+    "climb_power_w_per_m_s": Setting(0.0, 1e4, "measured"),
+    "descent_power_w_per_m_s": Setting(0.0, 1e4, "measured"),
+    "liftoff_power_w": Setting(0.0, 1e5, "measured"),
+    "touchdown_power_w": Setting(0.0, 1e5, "measured"),
+    "water_power_w": Setting(0.0, 1e5, "assumed"),
+    "battery_wh": Setting(0.1, 1e5, "assumed"),
+    "reserve_percent": Setting(0.0, 95.0, "assumed"),
+    "health_percent": Setting(1.0, 100.0, "assumed"),
+    "max_route_length_m": Setting(1.0, 1e7, "assumed"),
+    "max_route_duration_s": Setting(1.0, 1e6, "assumed"),
+}
+"""Every number of a fleet."""
+
+DECISIVE = ("speed_m_s", "transit_height_m", "sampling", "dwell_s", "dip_height_m")
+"""Settings that decide what is flown: their defaults are told as assumptions wherever a plan is told."""
