@@ -272,3 +272,11 @@ def test_legs_below_all_normal_numbers_are_one_unit() -> None:
         matrix = integers.fine(np.array([[0.0, leg], [leg, 0.0]]), np.inf)
         assert matrix.legs.tolist() == [[0, 1], [1, 0]]
     assert integers.fine(np.array([[0.0, 1e-301], [1e-301, 0.0]]), np.inf).legs.max() == integers.UNITS_OF_LONGEST_LEG
+
+
+@pytest.mark.parametrize("planner", ["search", "territory", "hpp", *BASELINES])
+@pytest.mark.parametrize("scale", [5e-324, 1e-310, 1e-200, 1e-100])
+def test_farms_of_hardly_any_size_are_planned(planner: str, scale: float) -> None:
+    ponds = scale * np.array([[1.0, 0.0], [0.0, 2.0], [3.0, 0.0], [0.0, -4.0], [0.0, 0.0]])
+    assert plan_of(Problem((0.0, 0.0), ponds, 2), planner).is_feasible
+    assert plan_of(Problem((0.0, 0.0), ponds, 2, service_durations_s=ponds[:, 0]), planner).is_feasible

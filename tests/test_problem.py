@@ -119,7 +119,7 @@ Change = dict[str, object]
         ({"ponds": []}, "ponds", "no pond"),
         ({"ponds": np.zeros((0, 2))}, "ponds", "no pond"),
         ({"ponds": [[0, 0], [0, math.inf], [0, 0]]}, "ponds[1][1]", "inf"),
-        ({"ponds": [[0, 0], [0, 0], [5e-324, 0]]}, "ponds[2][0]", "5e-324"),
+        ({"ponds": [[0, 0], [0, 0], [-1e300, 0]]}, "ponds[2][0]", "-1e300"),
         ({"num_drones": 0}, "num_drones", "no drone"),
         ({"num_drones": -1}, "num_drones", "-1"),
         ({"num_drones": 2**64}, "num_drones", "18446744073709551616"),
