@@ -244,3 +244,39 @@ def test_fine_legs_are_rounded_up_so_that_limits_hold() -> None:
     assert matrix.legs.tolist() == [[0, 1_000_000], [333_334, 0]]
     assert matrix.limit == 1_333_333
     assert integers.fine(np.zeros((2, 2)), 4.0).limit is None
+
+
+def test_the_matrix_of_legs_is_what_the_judge_counts() -> None:
+    ponds = np.random.default_rng(2).uniform(0, 100, (8, 2))
+    problem = Problem(
+        [50, -20],
+        ponds,
+        2,
+        service_durations_s=np.arange(8.0),
+        speed_m_s=5.0,
+        leg_stop_s=2.5,
+        takeoff_s=9.0,
+        way_home_speed_m_s=10.0,
+        way_home_fixed_s=44.0,
+    )
+    legs = integers.legs_of(problem)
+    plan = pondhop.evaluate(problem, [[3, 1, 4, 0], [7, 5, 2, 6]])
+    for route, length, duration_s in zip(plan.routes, plan.route_lengths, plan.route_durations_s, strict=True):
+        pairs = list(itertools.pairwise([0, *(pond + 1 for pond in route), 0]))
+        assert sum(legs.lengths_m[pair] for pair in pairs) == pytest.approx(length)
+        assert sum(legs.costs_s[pair] for pair in pairs) == pytest.approx(duration_s)
+
+
+def test_legs_below_all_normal_numbers_are_one_unit() -> None:
+    for leg in (5e-324, 1e-303):
+        matrix = integers.fine(np.array([[0.0, leg], [leg, 0.0]]), np.inf)
+        assert matrix.legs.tolist() == [[0, 1], [1, 0]]
+    assert integers.fine(np.array([[0.0, 1e-301], [1e-301, 0.0]]), np.inf).legs.max() == integers.UNITS_OF_LONGEST_LEG
+
+
+@pytest.mark.parametrize("planner", ["search", "territory", "hpp", *BASELINES])
+@pytest.mark.parametrize("scale", [5e-324, 1e-310, 1e-200, 1e-100])
+def test_farms_of_hardly_any_size_are_planned(planner: str, scale: float) -> None:
+    ponds = scale * np.array([[1.0, 0.0], [0.0, 2.0], [3.0, 0.0], [0.0, -4.0], [0.0, 0.0]])
+    assert plan_of(Problem((0.0, 0.0), ponds, 2), planner).is_feasible
+    assert plan_of(Problem((0.0, 0.0), ponds, 2, service_durations_s=ponds[:, 0]), planner).is_feasible

@@ -119,7 +119,7 @@ Change = dict[str, object]
         ({"ponds": []}, "ponds", "no pond"),
         ({"ponds": np.zeros((0, 2))}, "ponds", "no pond"),
         ({"ponds": [[0, 0], [0, math.inf], [0, 0]]}, "ponds[1][1]", "inf"),
-        ({"ponds": [[0, 0], [0, 0], [5e-324, 0]]}, "ponds[2][0]", "5e-324"),
+        ({"ponds": [[0, 0], [0, 0], [-1e300, 0]]}, "ponds[2][0]", "-1e300"),
         ({"num_drones": 0}, "num_drones", "no drone"),
         ({"num_drones": -1}, "num_drones", "-1"),
         ({"num_drones": 2**64}, "num_drones", "18446744073709551616"),
@@ -333,3 +333,27 @@ def test_an_index_out_of_range_names_the_pond(problem: Problem) -> None:
         with pytest.raises(InvalidInput) as error:
             judge(problem, [[0], [1, 3]])
         assert [(fault.path, fault.message) for fault in error.value.faults] == [("routes[1][1]", "there is no pond 3")]
+
+
+@pytest.mark.parametrize(
+    ("routes", "paths"),
+    [
+        ([[0], [1, -1]], ["routes[1][1]"]),
+        ([[2**64, 0], [1.5]], ["routes[0][0]", "routes[1][0]"]),
+        ([["a"], None], ["routes[0][0]", "routes[1]"]),
+        (None, ["routes"]),
+        (5, ["routes"]),
+        ([0, 1, 2], ["routes[0]", "routes[1]", "routes[2]"]),
+    ],
+)
+def test_routes_that_are_none_are_faults(problem: Problem, routes: object, paths: list[str]) -> None:
+    for judge in (evaluate, separation):
+        with pytest.raises(InvalidInput) as error:
+            judge(problem, routes)  # type: ignore[arg-type]
+        assert [fault.path for fault in error.value.faults] == paths
+
+
+def test_routes_of_any_sequences(problem: Problem) -> None:
+    expected = evaluate(problem, [[0, 1], [2]])
+    for routes in (((0, 1), (2,)), [np.array([0, 1]), np.array([2], dtype=np.uint8)], iter([iter([0, 1]), [2]])):
+        assert evaluate(problem, routes) == expected  # type: ignore[arg-type]

@@ -20,3 +20,10 @@ def test_an_unknown_pond_is_a_clean_error() -> None:
     problem = Problem([0, 0], np.ones((1, 2)), 1)
     with pytest.raises(InvalidInput, match="there is no pond 1"):
         separation(problem, [[0], [1]])
+
+
+def test_a_way_home_over_the_route_of_another_drone_is_counted_apart() -> None:
+    # The second drone comes home across the row that the first one flies.
+    ponds = np.array([[-10.0, 10.0], [10.0, 10.0], [0.0, 20.0], [40.0, 20.0]])
+    measured = separation(Problem([0, 0], ponds, 2), [[0, 1], [3, 2]])
+    assert (measured.num_crossings, measured.num_depot_leg_crossings) == (0, 1)

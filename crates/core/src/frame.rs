@@ -117,6 +117,35 @@ mod tests {
     use geographiclib_rs::{Geodesic, InverseGeodesic};
     use proptest::prelude::*;
 
+    #[test]
+    fn a_frame_reaches_across_the_180th_meridian_both_ways() {
+        // A hundredth of a degree of longitude on the equator.
+        let step = EQUATORIAL_RADIUS * 0.01f64.to_radians();
+        for (origin_deg, place_deg, expected_x) in [
+            (179.995, -179.995, step),
+            (-179.995, 179.995, -step),
+            (179.995, 180.005, step),
+            (-179.995, -180.005, -step),
+            (180.0, -180.0, 0.0),
+            (-180.0, 180.0, 0.0),
+            (-180.0, 179.99, -step),
+            (180.0, -179.99, step),
+            // Longitudes that count on around the globe.
+            (0.0, 360.01, step),
+            (0.0, -360.01, -step),
+            (350.0, -9.99, step),
+            (0.0, 0.01, step),
+        ] {
+            let frame = LocalFrame::new(origin_deg, 0.0);
+            let local = frame.to_local(place_deg, 0.0);
+            assert!((local.x - expected_x).abs() < 1e-3 && local.y.abs() < 1e-6, "{origin_deg} {place_deg}: {local:?}");
+            let (longitude_deg, latitude_deg) = frame.to_geographic(local);
+            assert!((-180.0..180.0).contains(&longitude_deg), "{longitude_deg}");
+            let around_deg = (longitude_deg - place_deg).rem_euclid(360.0);
+            assert!(around_deg.min(360.0 - around_deg) < 1e-9 && latitude_deg.abs() < 1e-9, "{longitude_deg}");
+        }
+    }
+
     proptest! {
         /// Issue: within 0.1 % over 20 km. The projection does a thousand times better, and the test holds it to that.
         #[test]

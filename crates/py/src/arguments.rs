@@ -1,5 +1,6 @@
 //! What Python passes in: numbers and arrays of any real type, with faults in the words of the Python API.
 
+use crate::error::to_python;
 use numpy::PyReadonlyArrayDyn;
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
@@ -105,6 +106,39 @@ pub fn values(
         }
         Some(_) => Ok(view.iter().copied().collect()),
         None => Ok(Vec::new()),
+    }
+}
+
+/// Pond indices per route.
+pub fn routes(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<usize>>> {
+    if let Ok(routes) = value.extract() {
+        return Ok(routes);
+    }
+    let mut faults = Faults::default();
+    let mut routes = Vec::new();
+    for (route, ponds) in items(&mut faults, name, value)?.into_iter().enumerate() {
+        let mut indices = Vec::new();
+        for (place, pond) in items(&mut faults, &format!("{name}[{route}]"), &ponds)?.into_iter().enumerate() {
+            match pond.extract::<usize>() {
+                Ok(index) => indices.push(index),
+                Err(_) => {
+                    let message = format!("there is no pond {}", shortened(&pond));
+                    faults.add(format!("{name}[{route}][{place}]"), message, "give the index of a pond, from 0 on");
+                }
+            }
+        }
+        routes.push(indices);
+    }
+    faults.into_result(routes).map_err(|error| to_python(&error))
+}
+
+fn items<'py>(faults: &mut Faults, name: &str, value: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    match value.try_iter() {
+        Ok(items) => items.collect(),
+        Err(_) => {
+            faults.add(name, format!("it is {}", shortened(value)), "give a list of pond indices for each route");
+            Ok(Vec::new())
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! `pondhop_core::attention`.
 
+use crate::arguments;
 use crate::error::to_python;
 use crate::problem::Problem;
 use numpy::{PyArray2, PyReadonlyArrayDyn, ToPyArray};
@@ -155,8 +156,9 @@ impl AttentionModel {
         &self,
         py: Python<'py>,
         problem: &Problem,
-        routes: Vec<Vec<usize>>,
+        routes: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let routes = arguments::routes("routes", routes)?;
         let logits = py.detach(|| self.inner.logits(&problem.inner, &routes)).map_err(|error| to_python(&error))?;
         Ok(logits.to_pyarray(py))
     }

@@ -1,5 +1,6 @@
 //! `pondhop_core::evaluate`.
 
+use crate::arguments;
 use crate::error::to_python;
 use crate::plan::Plan;
 use crate::problem::Problem;
@@ -24,8 +25,8 @@ use pyo3::prelude::*;
 /// InvalidInput
 ///     If a route names a pond that does not exist.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)]
-pub fn evaluate(py: Python<'_>, problem: &Problem, routes: Vec<Vec<usize>>) -> PyResult<Plan> {
+pub fn evaluate(py: Python<'_>, problem: &Problem, routes: &Bound<'_, PyAny>) -> PyResult<Plan> {
+    let routes = arguments::routes("routes", routes)?;
     py.detach(|| pondhop_core::evaluate::evaluate(&problem.inner, &routes))
         .map(|inner| Plan::new(&problem.inner, inner))
         .map_err(|error| to_python(&error))

@@ -10,7 +10,8 @@ use std::time::Instant;
 /// Parameters
 /// ----------
 /// problem
-///     What is to be planned. HPP looks at places only: no limit, service duration or speed changes its plan.
+///     What is to be planned. HPP looks at places only: no limit, service duration or speed changes its plan, but a way home
+///     of the drones' own decides which way round a route is flown.
 /// seed
 ///     Starts the clustering.
 ///

@@ -167,7 +167,7 @@ impl Energy {
 /// Raises
 /// ------
 /// InvalidInput
-///     With every fault of the input: its place, what is wrong, what to do. Coordinates are 0 or 1e-150 to 1e9 in size,
+///     With every fault of the input: its place, what is wrong, what to do. Coordinates are at most 1e9 in size,
 ///     speeds 1e-6 to 1e6, durations at most 1e9, powers at most 1e9, energies at most 1e12, so that all that is computed from
 ///     them is finite.
 /// TypeError

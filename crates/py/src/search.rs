@@ -1,5 +1,6 @@
 //! `pondhop_core::search`.
 
+use crate::arguments;
 use crate::error::to_python;
 use crate::problem::Problem;
 use pondhop_core::effort::Progress;
@@ -70,7 +71,7 @@ pub fn search(
     threads: usize,
     slack: f64,
     objective: &str,
-    start: Option<Vec<Vec<usize>>>,
+    start: Option<&Bound<'_, PyAny>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Vec<Vec<usize>>, f64, u64, bool)> {
     let begin = Instant::now();
@@ -80,6 +81,7 @@ pub fn search(
         _ => return Err(PyValueError::new_err(format!("objective is 'max' or 'total', not {objective:?}"))),
     };
     check_effort(time_limit_s, iterations, threads, slack)?;
+    let start = start.map(|routes| arguments::routes("start", routes)).transpose()?;
     if let Some(routes) = &start {
         check_start(problem, routes)?;
     }

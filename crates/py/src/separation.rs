@@ -1,5 +1,6 @@
 //! `pondhop_core::separation`.
 
+use crate::arguments;
 use crate::error::to_python;
 use crate::problem::Problem;
 use crate::values::hash_of;
@@ -82,8 +83,8 @@ impl Separation {
 /// InvalidInput
 ///     If a route names a pond that does not exist.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)]
-pub fn separation(py: Python<'_>, problem: &Problem, routes: Vec<Vec<usize>>) -> PyResult<Separation> {
+pub fn separation(py: Python<'_>, problem: &Problem, routes: &Bound<'_, PyAny>) -> PyResult<Separation> {
+    let routes = arguments::routes("routes", routes)?;
     py.detach(|| pondhop_core::separation::separation(&problem.inner, &routes))
         .map(|inner| Separation { inner })
         .map_err(|error| to_python(&error))

@@ -8,6 +8,7 @@ lengths. Matrices take O(n^2) memory: 60 to 80 bytes for each pair of places, he
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,7 +87,8 @@ def legs_of(problem: Problem) -> Legs:
 def fine(legs: NDArray[np.float64], limit: float) -> IntegerMatrix:
     """Return legs rounded up: what keeps the limit in units does so in truth, if not always the other way round."""
     longest = float(legs.max())
-    units = UNITS_OF_LONGEST_LEG / longest if longest > 0.0 else 1.0
+    # Where the longest leg is shorter, there would be more units than a float can count.
+    units = UNITS_OF_LONGEST_LEG / longest if longest > UNITS_OF_LONGEST_LEG * sys.float_info.min else 1.0
     in_units = np.ceil(legs * units).astype(np.int64)
     return IntegerMatrix(in_units, units, _limit_in_units(limit, units, in_units))
 

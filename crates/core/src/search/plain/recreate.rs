@@ -69,7 +69,8 @@ impl Recreate {
                 return false;
             }
         }
-        true
+        // A route may have become longer by what it lost.
+        !network.may_visits_save || state.max_route_cost() <= objective.cap
     }
 
     /// Sorts the removed visits: at random, far from the depot first or near it first, with odds 4 : 2 : 1.
