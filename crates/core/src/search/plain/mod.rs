@@ -77,6 +77,7 @@ pub(crate) use construct::open_at_best_leg;
 pub(crate) use improve::improve_routes;
 pub(crate) use network::Network;
 pub(crate) use order::{curve_keys, place_after_widest_gap, pseudo_angle};
+pub(crate) use rough::smooth_routes;
 pub(super) use run::solve;
 pub(crate) use run::to_indices;
 pub(crate) use state::State;

@@ -34,14 +34,14 @@ const MAX_REFINE_SHARE: f64 = 0.2;
 pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);
-    let rough = (options.start.is_none() && options.clock.is_some()).then(|| RoughPlan::new(&network));
+    let rough = (options.start.is_none() && options.clock.is_some()).then(|| RoughPlan::new(&network, &budget));
     // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
     let has_time = rough.is_none() || budget.share(0) * NEIGHBOURS_COST <= 1.0;
     let neighbours = if has_time { network.find_neighbours(&budget) } else { None };
     let Some(neighbours) = neighbours else {
         let routes = match options.start {
             Some(routes) => to_nodes(routes),
-            None => rough.unwrap_or_else(|| RoughPlan::new(&network)).improved(&budget),
+            None => rough.unwrap_or_else(|| RoughPlan::new(&network, &budget)).improved(&budget),
         };
         return Outcome { routes: to_indices(problem, routes), num_iterations: 0 };
     };
