@@ -18,7 +18,8 @@ use crate::geometry::Point;
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::search::{
-    Chain, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg, smooth_routes, to_indices,
+    Chain, Network, Objective, Rank, Schedule, State, curve_keys, improve_routes, open_at_best_leg, smooth_routes,
+    to_indices,
 };
 use cuts::{Cut, Cutter, Draw};
 use exact::compare;
@@ -93,7 +94,7 @@ pub fn plan(problem: &Problem, options: &Options<'_>) -> Vec<Vec<usize>> {
     let mut chain = Chain::new(network, state, objective, seed, Hulls::new(&points, network.num_routes, &tours));
     let mut effort = Effort::new(&budget);
     anneal(network, &mut effort, &mut chain, MAX_END, MAX_HEAT);
-    chain.restart(Objective::total_within(chain.best.max_route_cost()));
+    chain.restart(Objective::total_within(chain.best.max_route_cost(), chain.best.costs()));
     anneal(network, &mut effort, &mut chain, 1.0, TOTAL_HEAT);
     to_indices(problem, chain.best.routes(network))
 }
@@ -147,9 +148,10 @@ fn best_tours(
     curve.sort_unstable_by_key(|&visit| (curve_keys[visit as usize], visit));
     let whole = Cutter::new(network, &curve, 1);
     let is_over = || budget.is_time_over() || budget.share(0) >= TOURING_END;
-    let (mut best, mut best_longest) = (strips, f64::INFINITY);
+    let (mut best, mut best_rank): (_, Option<Rank>) = (strips, None);
     for (num_tried, candidate) in promising_cuts(network, budget, &curve, random).into_iter().enumerate() {
-        if num_tried >= NUM_TOURED && best_longest < f64::INFINITY || is_over() {
+        let is_enough = num_tried >= NUM_TOURED && best_rank.is_some_and(|rank| rank.is_within_limits());
+        if is_enough || is_over() {
             break;
         }
         let mut cutter = whole.clone();
@@ -161,15 +163,17 @@ fn best_tours(
             }
             tours.iter_mut().for_each(|part| tour(network, curve_keys, part));
             improve_routes(network, budget, &mut tours);
-            let costs: Vec<f64> = tours.iter().map(|tour| network.route_cost(tour)).collect();
-            cutter.cut_by_costs(&candidate.cuts, &costs);
-            let longest = costs.iter().copied().fold(0.0, f64::max);
-            if longest < best_longest {
-                (best, best_longest) = (tours, longest);
+            let state = State::new(network, &tours);
+            // A part that exceeds a limit is cut as if it cost as much more.
+            let cost = |route: usize| state.route_costs[route] * state.greatest_use(network, route).max(1.0);
+            cutter.cut_by_costs(&candidate.cuts, &(0..tours.len()).map(cost).collect::<Vec<f64>>());
+            let rank = Rank::of(state.costs());
+            if best_rank.is_none_or(|best_rank| rank.is_better(&best_rank)) {
+                (best, best_rank) = (tours, Some(rank));
             }
         }
     }
-    if best_longest.is_infinite() {
+    if best_rank.is_none() {
         improve_routes(network, budget, &mut best);
     }
     best
