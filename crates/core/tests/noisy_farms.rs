@@ -69,11 +69,7 @@ fn ponds_of_all_magnitudes() {
 
 /// `value` with its last place changed by `units`.
 fn nudged(value: f64, units: i64) -> f64 {
-    if value == 0.0 {
-        units as f64 * f64::MIN_POSITIVE
-    } else {
-        f64::from_bits((value.to_bits() as i64 + units) as u64)
-    }
+    if value == 0.0 { units as f64 * 1e-130 } else { f64::from_bits((value.to_bits() as i64 + units) as u64) }
 }
 
 type Nudges = Vec<(usize, i64, i64)>;

@@ -17,7 +17,8 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Minimise the longest route, then the total, by ruin and recreate.
 ///
-/// What is minimised is time: legs, stops and service. In research instances time is length.
+/// What is minimised is time: legs, stops and service. In research instances time is length. The limits of length and energy of
+/// the drones are kept, wherever the search finds a plan that keeps them.
 ///
 /// Parameters
 /// ----------

@@ -16,11 +16,11 @@ mod options;
 mod plain;
 
 use crate::problem::Problem;
-pub(crate) use objective::Objective;
+pub(crate) use objective::{Objective, Rank};
 pub use options::{Goal, Options, Outcome};
 pub(crate) use plain::{
     Airspace, Chain, Network, Schedule, State, curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap,
-    pseudo_angle, to_indices,
+    pseudo_angle, smooth_routes, to_indices,
 };
 
 /// Plans routes for `problem`, each of at least one visit, at most one per drone.

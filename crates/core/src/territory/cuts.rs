@@ -72,11 +72,6 @@ impl<'a> Draw<'a> {
         }
         cuts
     }
-
-    /// Parallel cuts.
-    pub fn strips(&mut self) -> Vec<Cut> {
-        vec![Cut { order: Order::Along(draw_direction(self.random)), num_first: 1 }; self.num_routes - 1]
-    }
 }
 
 /// A direction drawn from all, by rejection: without trigonometry it is the same on every machine.
@@ -204,7 +199,7 @@ impl Cutter {
         self.sort(first, end, cut.order);
         let first_part = self.ends.len() - 1;
         let (before, after) = self.approaches[first_part..first_part + rest.len() + 2].split_at(cut.num_first);
-        let place = first + balanced_place(&self.items[first..end], before, after);
+        let place = first + balanced_place(&self.items[first..end], &self.keyed, before, after);
         let (first_cuts, second_cuts) = rest.split_at(cut.num_first - 1);
         self.cut_range(first, place, first_cuts);
         self.cut_range(place, end, second_cuts);
@@ -236,8 +231,9 @@ impl Cutter {
     }
 }
 
-/// How many of the sorted items the first part gets, so that routes of both cost the same on average. Every route gets one.
-fn balanced_place(items: &[Item], first_approaches: &[f64], second_approaches: &[f64]) -> usize {
+/// How many of the sorted items the first part gets, so that routes of both cost the same on average. Every route gets one, and
+/// items with the same key are not parted where that can be.
+fn balanced_place(items: &[Item], keyed: &[(f64, u32)], first_approaches: &[f64], second_approaches: &[f64]) -> usize {
     let (num_first, num_second) = (first_approaches.len(), second_approaches.len());
     let mut first: f64 = first_approaches.iter().sum();
     let mut second: f64 = second_approaches.iter().chain(items.iter().map(|item| &item.price)).sum();
@@ -247,7 +243,7 @@ fn balanced_place(items: &[Item], first_approaches: &[f64], second_approaches: &
         first += item.price;
         second -= item.price;
         let value = f64::max(first * first_share, second * second_share);
-        if place >= num_first && value < best_value {
+        if place >= num_first && value < best_value && keyed[place - 1].0 != keyed[place].0 {
             (best, best_value) = (place, value);
         }
     }

@@ -10,15 +10,19 @@
 //! O(n log n) for the cuts, O(visits of a route) for a change of the territories; memory O(n).
 
 mod cuts;
+mod exact;
 mod hulls;
 
 use crate::effort::{Budget, Clock, Effort, Watch};
+use crate::geometry::Point;
 use crate::problem::Problem;
 use crate::random::Random;
 use crate::search::{
-    Chain, Network, Objective, Schedule, State, curve_keys, improve_routes, open_at_best_leg, to_indices,
+    Chain, Network, Objective, Rank, Schedule, State, curve_keys, improve_routes, open_at_best_leg, smooth_routes,
+    to_indices,
 };
 use cuts::{Cut, Cutter, Draw};
+use exact::compare;
 use hulls::Hulls;
 
 /// Ways of cutting that are drawn.
@@ -38,6 +42,8 @@ const DRAWING_END: f64 = 0.2;
 const TOURING_END: f64 = 0.5;
 /// Share of the effort at which the work on the longest route ends and that on the total begins.
 const MAX_END: f64 = 0.9;
+/// How long it takes to find neighbours and to make use of them, in times of making strips.
+const NEIGHBOURS_COST: f64 = 10.0;
 /// Temperatures relative to the longest route.
 const MAX_HEAT: (f64, f64) = (1e-3, 1e-6);
 const TOTAL_HEAT: (f64, f64) = (1e-3, 3e-6);
@@ -61,25 +67,34 @@ impl Default for Options<'_> {
     }
 }
 
-/// Plans routes for `problem` whose hulls do not overlap: visit indices in flying order, every visit once, at most one route
-/// per drone, none empty. Where visits share a place, hulls may share that place.
+/// Plans routes for `problem` whose hulls do not touch: visit indices in flying order, every visit once, at most one route per
+/// drone, none empty. Visits in one place are on one route.
 #[must_use]
 pub fn plan(problem: &Problem, options: &Options<'_>) -> Vec<Vec<usize>> {
     let Options { seed, max_iterations, clock, watch } = *options;
     let mut network = Network::new(problem);
     let default_iterations = clock.is_none().then_some(STEPS_PER_VISIT * network.num_visits as u64);
     let budget = Budget::new(max_iterations.or(default_iterations), clock, watch);
-    let neighbours = network.find_neighbours(&Budget::new(None, None, None)).unwrap_or_default();
+    // Where they are in truth: what is divided by the speed is rounded.
+    let points: Vec<Point> = problem.visits().iter().map(|visit| visit.position).collect();
+    let curve_keys = curve_keys(&network.points[..network.num_visits]);
+    let mut strips = strips(&points, network.num_routes);
+    strips.iter_mut().for_each(|part| tour(&network, &curve_keys, part));
+    let has_time = budget.share(0) * NEIGHBOURS_COST <= 1.0;
+    let neighbours = if has_time { network.find_neighbours(&budget) } else { None };
+    let Some(neighbours) = neighbours else {
+        smooth_routes(&network, &budget, &mut strips);
+        return to_indices(problem, strips);
+    };
     network.set_neighbours(neighbours);
     let network = &network;
-    let mut random = Random::new(seed);
-    let tours = best_tours(network, &budget, &mut random);
+    let tours = best_tours(network, &points, &curve_keys, &budget, strips, &mut Random::new(seed));
     let state = State::new(network, &tours);
     let objective = Objective::longest_route(network.num_routes, state.costs());
-    let mut chain = Chain::new(network, state, objective, seed, Hulls::new(network, &tours));
+    let mut chain = Chain::new(network, state, objective, seed, Hulls::new(&points, network.num_routes, &tours));
     let mut effort = Effort::new(&budget);
     anneal(network, &mut effort, &mut chain, MAX_END, MAX_HEAT);
-    chain.restart(Objective::total_within(chain.best.max_route_cost()));
+    chain.restart(Objective::total_within(chain.best.max_route_cost(), chain.best.costs()));
     anneal(network, &mut effort, &mut chain, 1.0, TOTAL_HEAT);
     to_indices(problem, chain.best.routes(network))
 }
@@ -89,41 +104,77 @@ fn anneal(network: &Network, effort: &mut Effort<'_>, chain: &mut Chain<Hulls<'_
     chain.anneal(network, effort, &schedule, end, 0.0);
 }
 
-/// The best of several plans made of cuts.
-fn best_tours(network: &Network, budget: &Budget<'_>, random: &mut Random) -> Vec<Vec<u32>> {
-    let curve_keys = curve_keys(&network.points[..network.num_visits]);
+/// Parts of a farm whose hulls do not touch, whatever the farm: in the order of their places from left to right, about as many
+/// visits each. As many as routes, unless there are fewer places.
+fn strips(points: &[Point], num_routes: usize) -> Vec<Vec<u32>> {
+    let mut visits: Vec<(Point, u32)> = points.iter().copied().zip(0..).collect();
+    visits.sort_unstable_by(|a, b| compare(a.0, b.0).then(a.1.cmp(&b.1)));
+    let places: Vec<&[(Point, u32)]> = visits.chunk_by(|a, b| compare(a.0, b.0).is_eq()).collect();
+    let num_parts = num_routes.min(places.len());
+    let (mut parts, mut num_placed, mut first) = (Vec::with_capacity(num_parts), 0, 0);
+    for part in 1..=num_parts {
+        let mut end = first;
+        // Each of the parts to come needs a place.
+        while end < places.len() - (num_parts - part) && (end == first || num_placed * num_parts < points.len() * part)
+        {
+            num_placed += places[end].len();
+            end += 1;
+        }
+        parts.push(places[first..end].iter().flat_map(|place| place.iter().map(|&(_, visit)| visit)).collect());
+        first = end;
+    }
+    parts
+}
+
+/// Puts the visits of a part into the order of a first tour.
+fn tour(network: &Network, curve_keys: &[u32], part: &mut [u32]) {
+    let mut keys: Vec<u64> =
+        part.iter().map(|&visit| u64::from(curve_keys[visit as usize]) << 32 | u64::from(visit)).collect();
+    keys.sort_unstable();
+    part.iter_mut().zip(keys).for_each(|(visit, key)| *visit = key as u32);
+    open_at_best_leg(network, part);
+}
+
+/// The best of several plans made of cuts; `strips`, if cuts keep none apart or there is no time for any.
+fn best_tours(
+    network: &Network,
+    points: &[Point],
+    curve_keys: &[u32],
+    budget: &Budget<'_>,
+    strips: Vec<Vec<u32>>,
+    random: &mut Random,
+) -> Vec<Vec<u32>> {
     let mut curve: Vec<u32> = (0..network.num_visits as u32).collect();
     curve.sort_unstable_by_key(|&visit| (curve_keys[visit as usize], visit));
     let whole = Cutter::new(network, &curve, 1);
-    let (mut best, mut best_longest) = (Vec::new(), f64::INFINITY);
-    let mut num_tried = 0;
-    for candidate in promising_cuts(network, budget, &curve, random) {
+    let is_over = || budget.is_time_over() || budget.share(0) >= TOURING_END;
+    let (mut best, mut best_rank): (_, Option<Rank>) = (strips, None);
+    for (num_tried, candidate) in promising_cuts(network, budget, &curve, random).into_iter().enumerate() {
+        let is_enough = num_tried >= NUM_TOURED && best_rank.is_some_and(|rank| rank.is_within_limits());
+        if is_enough || is_over() {
+            break;
+        }
         let mut cutter = whole.clone();
         cutter.cut_by_estimate(&candidate.cuts);
         for _ in 0..=NUM_BALANCINGS {
             let mut tours = cutter.parts();
-            let are_apart = Hulls::new(network, &tours).are_apart();
-            // Where ponds share a place, no cuts may keep the parts apart; any will then do.
-            if !are_apart && !best.is_empty() {
+            if is_over() || !Hulls::new(points, network.num_routes, &tours).are_apart() {
                 break;
             }
-            for tour in &mut tours {
-                tour.sort_unstable_by_key(|&visit| (curve_keys[visit as usize], visit));
-                open_at_best_leg(network, tour);
-            }
+            tours.iter_mut().for_each(|part| tour(network, curve_keys, part));
             improve_routes(network, budget, &mut tours);
-            let costs: Vec<f64> = tours.iter().map(|tour| network.route_cost(tour)).collect();
-            cutter.cut_by_costs(&candidate.cuts, &costs);
-            let longest = if are_apart { costs.iter().copied().fold(0.0, f64::max) } else { f64::INFINITY };
-            if longest < best_longest || best.is_empty() {
-                (best, best_longest) = (tours, longest);
+            let state = State::new(network, &tours);
+            // A part that exceeds a limit is cut as if it cost as much more.
+            let cost = |route: usize| state.route_costs[route] * state.greatest_use(network, route).max(1.0);
+            cutter.cut_by_costs(&candidate.cuts, &(0..tours.len()).map(cost).collect::<Vec<f64>>());
+            let rank = Rank::of(state.costs());
+            if best_rank.is_none_or(|best_rank| rank.is_better(&best_rank)) {
+                (best, best_rank) = (tours, Some(rank));
             }
         }
-        num_tried += 1;
-        let is_enough = num_tried >= NUM_TOURED || budget.share(0) >= TOURING_END;
-        if is_enough && best_longest < f64::INFINITY {
-            break;
-        }
+    }
+    if best_rank.is_none() {
+        improve_routes(network, budget, &mut best);
     }
     best
 }
@@ -134,19 +185,18 @@ struct Candidate {
     longest: f64,
 }
 
-/// Ways of cutting the farm: the most promising first; strips last, which always are apart.
+/// Ways of cutting the farm, the most promising first.
 fn promising_cuts(network: &Network, budget: &Budget<'_>, curve: &[u32], random: &mut Random) -> Vec<Candidate> {
     let num_items = NUM_ITEMS.max(NUM_ITEMS_PER_ROUTE * network.num_routes);
     let mut cutter = Cutter::new(network, curve, (network.num_visits / num_items).max(1));
     let mut draw = Draw::new(network, random);
-    let mut candidates = Vec::with_capacity(NUM_DRAWN + 1);
+    let mut candidates = Vec::with_capacity(NUM_DRAWN);
     while candidates.len() < NUM_DRAWN && (candidates.is_empty() || budget.share(0) < DRAWING_END) {
         let cuts = draw.cuts();
         let longest = cutter.cut_by_estimate(&cuts);
         candidates.push(Candidate { cuts, longest });
     }
     candidates.sort_by(|a, b| a.longest.total_cmp(&b.longest));
-    candidates.push(Candidate { cuts: draw.strips(), longest: f64::INFINITY });
     candidates
 }
 
@@ -155,7 +205,6 @@ mod tests {
     use super::*;
     use crate::evaluate::evaluate;
     use crate::generate::{Variant, generate};
-    use crate::geometry::Point;
     use crate::separation::separation;
     use proptest::prelude::*;
 
@@ -184,7 +233,8 @@ mod tests {
             }
             let parts: Vec<Vec<u32>> =
                 routes.iter().map(|route| route.iter().map(|&visit| visit as u32).collect()).collect();
-            if Hulls::new(&Network::new(problem), &parts).are_apart() {
+            let points: Vec<Point> = problem.visits().iter().map(|visit| visit.position).collect();
+            if Hulls::new(&points, num_routes, &parts).are_apart() {
                 let length = |route: &Vec<usize>| shortest_tour(problem, Vec::new(), route.clone());
                 best = best.min(routes.iter().map(length).fold(0.0, f64::max));
             }
@@ -263,6 +313,26 @@ mod tests {
             .collect();
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert!(spans.windows(2).all(|pair| pair[0].1 < pair[1].0), "{spans:?}");
+    }
+
+    #[test]
+    fn a_watch_ends_it_at_any_look_with_territories_apart() {
+        use std::ops::ControlFlow;
+        let farm = generate(80, Variant::Authors, 6).unwrap();
+        let problem = Problem::research(farm.depot, &farm.ponds, 4).unwrap();
+        for num_allowed in 0..40 {
+            let looks = std::sync::atomic::AtomicU32::new(0);
+            let watch = |_: &crate::effort::Progress| {
+                let is_over = looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= num_allowed;
+                if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            // Steps without end: only the watch ends it.
+            let options = Options { max_iterations: Some(u64::MAX), watch: Some(&watch), ..Options::default() };
+            let routes = plan(&problem, &options);
+            longest(&problem, &routes);
+            assert_apart(&problem, &routes);
+            assert_eq!(looks.into_inner(), num_allowed + 1);
+        }
     }
 
     #[test]

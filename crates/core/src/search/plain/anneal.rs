@@ -101,10 +101,11 @@ impl<A: Airspace> Chain<A> {
         self.restart(self.objective.aimed_at(state.costs()));
     }
 
-    /// Anneals until the share `until` of the effort is used, or no route is longer than `floor`, which none can undercut.
+    /// Anneals until the share `until` of the effort is used, or no route costs more than `floor`, which none can
+    /// undercut.
     pub fn anneal(&mut self, network: &Network, effort: &mut Effort<'_>, schedule: &Schedule, until: f64, floor: f64) {
         let mut share = effort.share();
-        while share < until && self.best.max_route_cost() > floor {
+        while share < until && !self.best.is_down_to(floor) {
             let temperature = schedule.temperature(share);
             for _ in 0..STEPS_PER_LOOK {
                 self.step(network, temperature);

@@ -35,6 +35,11 @@ impl Search<'_> {
         if self.options.goal == Goal::Max { 0.0 } else { self.network.max_route_cost }
     }
 
+    /// Whether the total is the goal, and no route takes more than it may.
+    pub fn is_allowed(&self, plan: &State) -> bool {
+        plan.is_down_to(self.goal_cap())
+    }
+
     /// A chain that starts from `routes`.
     pub fn chain_from(&self, routes: &[Vec<u32>], stream: u64) -> Chain<SharedAirspace> {
         let state = State::new(self.network, routes);
@@ -54,7 +59,7 @@ impl Search<'_> {
         let slack = if self.options.goal == Goal::Max { self.options.slack } else { 0.0 };
         let cap = (longest * (1.0 + slack)).min(longest.max(self.network.max_route_cost));
         // Taking a visit out and putting it back changes the last bits of a route's cost.
-        Objective::total_within((cap * (1.0 + 1e-12)).max(self.goal_cap()))
+        Objective::total_within((cap * (1.0 + 1e-12)).max(self.goal_cap()), state.costs())
     }
 
     /// Whether the longest route of a plan can still become shorter, and that counts.
@@ -66,7 +71,7 @@ impl Search<'_> {
     pub fn balance(&self, chain: &mut Chain<SharedAirspace>) {
         if self.can_be_evened_out(&chain.best) {
             let mut state = chain.best.clone();
-            if balance(self.network, self.budget, &mut state) {
+            if balance(self.network, self.budget, &mut state) && state.excess() <= chain.best.excess() {
                 chain.adopt(&state);
             }
         }

@@ -25,27 +25,28 @@
 //!
 //! The modules, in reading order; each uses only those before it:
 //!
-//! 1. `network`: what is known about places: coordinates, leg costs, services, nearest neighbours.
-//! 2. `order`: orders of points around a place and along a curve.
-//! 3. `state`: a plan under change: routes as linked rings.
-//! 4. `airspace`: a rule on which route may take which visit.
-//! 5. `improve`: 2-opt and Or-opt on one route.
-//! 6. `construct`: a first plan from sectors around the depot.
-//! 7. `smooth`: the same as `improve` without neighbour lists, in passes.
-//! 8. `rough`: a plan in less time than it takes to find neighbours.
-//! 9. `ruin`: takes strings of neighbouring visits out.
-//! 10. `recreate`: puts them back.
-//! 11. `anneal`: a chain of such steps.
-//! 12. `balance`: evens out the routes.
-//! 13. `moves`: legs cut from several routes at once, joined in another way.
-//! 14. `lin_kernighan`: moves of up to five legs over all routes.
-//! 15. `cycles`: what one plan has and another has not, in parts that can be exchanged.
-//! 16. `assemble`: puts into a plan what is better in another.
-//! 17. `recombine`: makes a plan of two.
-//! 18. `context`: what the parts of one search share.
-//! 19. `population`: several plans at once, and their children.
-//! 20. `cooperate`: where threads meet.
-//! 21. `run`: one search from start to end.
+//! 1. `limits`: what a route may use of things other than its cost.
+//! 2. `network`: what is known about places: coordinates, leg costs, services, nearest neighbours.
+//! 3. `order`: orders of points around a place and along a curve.
+//! 4. `state`: a plan under change: routes as linked rings.
+//! 5. `airspace`: a rule on which route may take which visit.
+//! 6. `improve`: 2-opt and Or-opt on one route.
+//! 7. `construct`: a first plan from sectors around the depot.
+//! 8. `smooth`: the same as `improve` without neighbour lists, in passes.
+//! 9. `rough`: a plan in less time than it takes to find neighbours.
+//! 10. `ruin`: takes strings of neighbouring visits out.
+//! 11. `recreate`: puts them back.
+//! 12. `anneal`: a chain of such steps.
+//! 13. `balance`: evens out the routes.
+//! 14. `moves`: legs cut from several routes at once, joined in another way.
+//! 15. `lin_kernighan`: moves of up to five legs over all routes.
+//! 16. `cycles`: what one plan has and another has not, in parts that can be exchanged.
+//! 17. `assemble`: puts into a plan what is better in another.
+//! 18. `recombine`: makes a plan of two.
+//! 19. `context`: what the parts of one search share.
+//! 20. `population`: several plans at once, and their children.
+//! 21. `cooperate`: where threads meet.
+//! 22. `run`: one search from start to end.
 
 mod airspace;
 mod anneal;
@@ -56,6 +57,7 @@ mod context;
 mod cooperate;
 mod cycles;
 mod improve;
+mod limits;
 mod lin_kernighan;
 mod moves;
 mod network;
@@ -77,6 +79,7 @@ pub(crate) use construct::open_at_best_leg;
 pub(crate) use improve::improve_routes;
 pub(crate) use network::Network;
 pub(crate) use order::{curve_keys, place_after_widest_gap, pseudo_angle};
+pub(crate) use rough::smooth_routes;
 pub(super) use run::solve;
 pub(crate) use run::to_indices;
 pub(crate) use state::State;

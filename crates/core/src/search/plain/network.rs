@@ -8,6 +8,7 @@
 //! priced at half of what it costs out and home: a route then costs the mean of both ways, and who turns every route to its
 //! cheaper way ([`crate::direction`]) gets no route that costs more than it did here.
 
+use super::limits::{Limits, has_cost_like_length};
 use crate::effort::Budget;
 use crate::geometry::Point;
 use crate::neighbours::KdTree;
@@ -60,8 +61,10 @@ pub(crate) struct Network {
     pub may_visits_save: bool,
     /// Nodes from this on have legs of a price of their own: the copies of the depot, or none.
     first_priced: u32,
-    /// Longest time a drone can be under way.
+    /// Longest time a drone can be under way, also by its limit of length where that is one of time.
     pub max_route_cost: f64,
+    /// What a route may use of other things.
+    pub limits: Limits,
     /// Fixed time per leg.
     pub stop: f64,
     lists: NeighbourLists,
@@ -95,7 +98,12 @@ impl Network {
             least_ways: Vec::new(),
             may_visits_save: false,
             first_priced: u32::MAX,
-            max_route_cost: vehicle_type.max_duration,
+            max_route_cost: if has_cost_like_length(problem) {
+                vehicle_type.max_duration.min(vehicle_type.max_length * pace)
+            } else {
+                vehicle_type.max_duration
+            },
+            limits: Limits::new(problem),
             stop: vehicle_type.leg_stop_duration,
             lists: NeighbourLists::default(),
         };
@@ -149,6 +157,17 @@ impl Network {
         let (visit, depot) = (from.min(to), from.max(to));
         // A route without visits flies from one copy of the depot to another.
         (depot >= self.first_priced).then(|| self.depot_legs.get(visit as usize).copied().unwrap_or(0.0))
+    }
+
+    /// What the leg between two nodes uses of a limit.
+    pub fn use_of_leg(&self, limit: usize, from: u32, to: u32) -> f64 {
+        let seconds = self.points[from as usize].distance(self.points[to as usize]);
+        match [from, to].map(|node| node as usize >= self.num_visits) {
+            [false, false] => self.limits.of_leg(limit, seconds),
+            // A route without visits flies nowhere.
+            [true, true] => 0.0,
+            _ => self.limits.of_depot_leg(limit, seconds),
+        }
     }
 
     /// Where the depot is.

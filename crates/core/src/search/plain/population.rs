@@ -149,7 +149,7 @@ impl Population {
             return self.chains[0].anneal(search.network, effort, schedule, until, floor);
         }
         let mut share = effort.share();
-        while share < until && self.best().best.max_route_cost() > floor {
+        while share < until && !self.best().best.is_down_to(floor) {
             let mut child = self.child(search);
             effort.longest_elsewhere = self.best().best.max_route_cost();
             anneal(search, effort, &mut child, (share, (share + self.child_share).min(until)), CHILD_HEAT);
@@ -191,7 +191,8 @@ impl Population {
             }
         }
         let value = |costs: &[f64]| objective.value(RouteCosts::of(costs));
-        if let Some(better) = self.assemble_all(search, &child.best, objective.target, value) {
+        let better = self.assemble_all(search, &child.best, objective.target, value);
+        if let Some(better) = better.filter(|better| better.excess() <= child.best.excess()) {
             child.adopt(&better);
             is_balanced = false;
         }

@@ -145,7 +145,17 @@ fn cheapest_place_priced<const IS_PRICED: bool>(
 ) -> Option<Place> {
     let overflow_price = OVERFLOW_PRICES[(blinks.salt >> 63) as usize];
     let insertion = Insertion::new(network, visit, objective.target, overflow_price);
-    let mut cheapest = Cheapest { state, visit, objective, airspace, blinks, price: f64::INFINITY, place: None };
+    let mut cheapest = Cheapest {
+        network,
+        has_limits: network.limits.len() > 0,
+        state,
+        visit,
+        objective,
+        airspace,
+        blinks,
+        price: f64::INFINITY,
+        place: None,
+    };
     let mut reach = 0.0;
     for neighbour in network.neighbours(visit) {
         let (leg, node) = (neighbour.leg, &state.nodes[neighbour.node as usize]);
@@ -256,6 +266,9 @@ fn greater(a: f64, b: f64) -> f64 {
 
 /// The cheapest place so far.
 struct Cheapest<'a, A> {
+    network: &'a Network,
+    /// Whether routes may use only so much of something.
+    has_limits: bool,
     state: &'a State,
     visit: u32,
     objective: &'a Objective,
@@ -277,12 +290,16 @@ impl<A: Airspace> Cheapest<'_, A> {
             } else {
                 Place { after: node.previous, leg_in: other_leg, leg_out: leg, added }
             };
-            if offers.prices[side] < self.price
+            let mut price = offers.prices[side];
+            if self.has_limits && price < self.price {
+                price += self.objective.excess_price * self.state.excess_added(self.network, self.visit, place.after);
+            }
+            if price < self.price
                 && self.state.route_costs[node.route as usize] + added <= self.objective.cap
                 && !self.blinks.pass_over(place.after, node.route)
                 && self.airspace.admits(self.visit, node.route)
             {
-                (self.price, self.place) = (offers.prices[side], Some(place));
+                (self.price, self.place) = (price, Some(place));
             }
         }
     }

@@ -66,12 +66,15 @@ struct Best {
 }
 
 impl<'a> RoughPlan<'a> {
-    /// Sectors toured along strips: the cheaper of the two directions of the grid, begun at the cheaper end.
-    pub fn new(network: &'a Network) -> Self {
+    /// Sectors toured along strips: the cheaper of the two directions of the grid, begun at the cheaper end. If the time is over
+    /// before, there is one direction.
+    pub fn new(network: &'a Network, budget: &Budget<'_>) -> Self {
         let (places, rows_per_strip) = places_on_grid(network);
         let visits = visits_by_angle(network);
-        let strips =
-            [Strips::new(&places.xs, &places.ys, rows_per_strip), Strips::new(&places.ys, &places.xs, rows_per_strip)];
+        let mut strips = vec![Strips::new(&places.xs, &places.ys, rows_per_strip)];
+        if visits.len() <= MAX_SMALL || !budget.is_time_over() {
+            strips.push(Strips::new(&places.ys, &places.xs, rows_per_strip));
+        }
         let shares = vec![1.0; network.num_routes];
         let ends = ends_by_cost(&[0, visits.len()], &[1.0], &shares);
         let lengths: Vec<f64> = strips[0]
@@ -81,19 +84,24 @@ impl<'a> RoughPlan<'a> {
             .collect();
         let ends = ends_by_cost(&ends, &lengths, &shares);
         let sector_of = sectors_of(&visits, &ends);
-        let [tours, crosswise] = strips.each_ref().map(|strips| strips.tours(&sector_of, &ends));
-        let cheapest = |(tour, crosswise): (Vec<u32>, Vec<u32>)| {
-            let lengths = [&tour, &crosswise].map(|tour| places.tour_length(tour));
-            let is_crosswise = lengths[1] < lengths[0];
-            let mut tour = if is_crosswise { crosswise } else { tour };
-            let strips = &strips[usize::from(is_crosswise)];
-            strips.turn_runs(&mut tour, 0, 1);
-            if places.tour_length(&tour) > lengths[usize::from(is_crosswise)] {
-                strips.turn_runs(&mut tour, 0, 1);
+        let mut tours: Vec<Vec<Vec<u32>>> = strips.iter().map(|strips| strips.tours(&sector_of, &ends)).collect();
+        let cheapest = |sector: usize| {
+            let mut best = (f32::INFINITY, 0);
+            for (direction, tours) in tours.iter().enumerate() {
+                let length = places.tour_length(&tours[sector]);
+                if length < best.0 {
+                    best = (length, direction);
+                }
+            }
+            let (length, direction) = best;
+            let mut tour = std::mem::take(&mut tours[direction][sector]);
+            strips[direction].turn_runs(&mut tour, 0, 1);
+            if places.tour_length(&tour) > length {
+                strips[direction].turn_runs(&mut tour, 0, 1);
             }
             Path::new(&places, &tour)
         };
-        let paths = tours.into_iter().zip(crosswise).map(cheapest).collect();
+        let paths = (0..ends.len() - 1).map(cheapest).collect();
         let best = Best { longest: f64::INFINITY, routes: Vec::new() };
         Self { network, visits, ends, paths, places, rows: Rows::default(), best }
     }
@@ -162,6 +170,27 @@ impl<'a> RoughPlan<'a> {
             }
         }
         self.ends = ends;
+    }
+}
+
+/// Smooths routes without neighbour lists, each on its own, until that helps no more or the time is over.
+pub(crate) fn smooth_routes(network: &Network, budget: &Budget<'_>, routes: &mut [Vec<u32>]) {
+    let (places, _) = places_on_grid(network);
+    let mut rows = Rows::default();
+    let mut paths: Vec<(Path, f64)> = routes.iter().map(|route| (Path::new(&places, route), f64::INFINITY)).collect();
+    let mut is_shorter = true;
+    while is_shorter && !budget.is_time_over() {
+        is_shorter = false;
+        for (path, cost) in &mut paths {
+            (1..=MAX_PIECE).for_each(|piece| path.or_opt(network, budget, piece, MIN_SAVING, &mut rows));
+            path.two_opt(network, budget, &mut rows);
+            let new_cost = network.route_cost(path.route());
+            is_shorter |= new_cost < *cost * (1.0 - MIN_GAIN);
+            *cost = new_cost;
+        }
+    }
+    for (route, (path, _)) in routes.iter_mut().zip(&paths) {
+        route.copy_from_slice(path.route());
     }
 }
 
@@ -329,7 +358,7 @@ mod tests {
     #[test]
     fn a_strip_of_two_rows_is_toured_without_a_detour() {
         let network = network(Point::new(-3.0, -4.0), &turned_grid(12, 2), 1);
-        let routes = RoughPlan::new(&network).improved(&Budget::new(None, None, None));
+        let routes = RoughPlan::new(&network, &Budget::new(None, None, None)).improved(&Budget::new(None, None, None));
         // 23 legs of one pitch, and one from the depot and back each.
         let bound = 23.0 * 5.0 + 2.0 * network.depot_legs.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(longest(&network, &routes) <= 1.05 * bound);
@@ -340,11 +369,12 @@ mod tests {
         for seed in 1..6 {
             let farm = generate(300, Variant::Authors, seed).unwrap();
             let network = network(farm.depot, &farm.ponds, 5);
-            let plan = RoughPlan::new(&network);
+            let plan = RoughPlan::new(&network, &Budget::new(None, None, None));
             let strips = longest(&network, &routes_of(&plan));
             let out_of_time = || 1.0;
             let hasty = plan.improved(&Budget::new(None, Some(&out_of_time), None));
-            let patient = RoughPlan::new(&network).improved(&Budget::new(None, None, None));
+            let patient =
+                RoughPlan::new(&network, &Budget::new(None, None, None)).improved(&Budget::new(None, None, None));
             let [hasty, patient] = [hasty, patient].map(|routes| longest(&network, &routes));
             assert!(hasty < 0.95 * strips && patient < 0.95 * hasty, "{strips} {hasty} {patient}");
         }
@@ -359,7 +389,7 @@ mod tests {
         });
         let depot = Depot { position: Point::new(30.0, 0.0) };
         let network = Network::new(&Problem::new(depot, visits.collect(), VehicleType::unlimited(4)).unwrap());
-        let plan = RoughPlan::new(&network);
+        let plan = RoughPlan::new(&network, &Budget::new(None, None, None));
         let before = longest(&network, &routes_of(&plan));
         let routes = plan.improved(&Budget::new(None, None, None));
         let mean = routes.iter().map(|route| network.route_cost(route)).sum::<f64>() / 4.0;
@@ -375,7 +405,8 @@ mod tests {
             [(&near, Point::new(1e9, 0.0)), (&mixed, Point::default()), (&mixed, Point::new(1e9, 0.0))]
         {
             let network = network(depot, ponds, 3);
-            let routes = RoughPlan::new(&network).improved(&Budget::new(None, None, None));
+            let routes =
+                RoughPlan::new(&network, &Budget::new(None, None, None)).improved(&Budget::new(None, None, None));
             assert!(is_partition(&routes, ponds.len()));
         }
     }
@@ -393,7 +424,7 @@ mod tests {
         ) {
             let ponds: Vec<Point> = places.iter().map(|&(x, y)| Point::new(x, y)).collect();
             let network = network(Point::new(1.0, 1.0), &ponds, num_routes);
-            let plan = RoughPlan::new(&network);
+            let plan = RoughPlan::new(&network, &Budget::new(None, None, None));
             let before = routes_of(&plan);
             prop_assert!(is_partition(&before, ponds.len()));
             let looks = std::sync::atomic::AtomicU32::new(0);

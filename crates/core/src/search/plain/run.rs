@@ -30,18 +30,21 @@ const ALLOWANCES: [f64; 2] = [0.1, 0.02];
 /// more.
 const REFINE_STEPS_PER_VISIT: f64 = 4.0;
 const MAX_REFINE_SHARE: f64 = 0.2;
+/// Share of the total, over what one drone may take, that surely needs as many routes.
+const FULL_SHARE: f64 = 0.8;
+
 /// Plans routes for `problem`: see [`crate::search::solve`].
 pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let mut network = Network::new(problem);
-    let rough = (options.start.is_none() && options.clock.is_some()).then(|| RoughPlan::new(&network));
+    let rough = (options.start.is_none() && options.clock.is_some()).then(|| RoughPlan::new(&network, &budget));
     // Neighbours cannot be found by halves: without the time for all, the time goes into what does without them.
     let has_time = rough.is_none() || budget.share(0) * NEIGHBOURS_COST <= 1.0;
     let neighbours = if has_time { network.find_neighbours(&budget) } else { None };
     let Some(neighbours) = neighbours else {
         let routes = match options.start {
             Some(routes) => to_nodes(routes),
-            None => rough.unwrap_or_else(|| RoughPlan::new(&network)).improved(&budget),
+            None => rough.unwrap_or_else(|| RoughPlan::new(&network, &budget)).improved(&budget),
         };
         return Outcome { routes: to_indices(problem, routes), num_iterations: 0 };
     };
@@ -64,7 +67,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     let num_iterations = found[0].num_iterations;
     // A longest route that does not matter is as good as any other.
     let free_cost = found.iter().map(|found| found.free_cost).fold(f64::INFINITY, f64::min);
-    let rank = |plan: &State| Rank::new(plan.max_route_cost().max(free_cost), plan.total);
+    let rank = |plan: &State| Rank::of(plan.costs()).free_up_to(free_cost);
     let better = |one: State, other: State| if rank(&other).is_clearly_better(&rank(&one)) { other } else { one };
     let best = found.into_iter().map(|found| found.plan).reduce(better);
     let routes = best.map_or_else(Vec::new, |best| to_indices(problem, best.routes(&network)));
@@ -98,7 +101,7 @@ impl Thread<'_> {
             (None, Goal::Total) => Population::single(self.fewest_routes()),
         };
         let floor = search.floor();
-        let max_end = if population.best().best.max_route_cost() <= search.goal_cap() { 0.0 } else { MAX_END };
+        let max_end = if search.is_allowed(&population.best().best) { 0.0 } else { MAX_END };
         let schedule = Schedule::scaled(effort.share(), max_end, MAX_HEAT, population.best().best.max_route_cost());
         // Every thread comes to every meeting, also one that has nothing left to do, or the others would wait for ever.
         for until in MEETINGS.into_iter().chain([MAX_END]) {
@@ -141,7 +144,7 @@ impl Thread<'_> {
             return;
         }
         let (mut state, mut best) = (chain.best.clone(), chain.best.clone());
-        let rank = |plan: &State| Rank::new(plan.max_route_cost(), plan.total);
+        let rank = |plan: &State| Rank::of(plan.costs());
         let mut links = Vec::new();
         for allowance in ALLOWANCES {
             let cap = state.max_route_cost() * (1.0 + allowance);
@@ -159,16 +162,20 @@ impl Thread<'_> {
     /// A start for the least total: as few routes as the drones' limit allows, because every route costs two depot legs, and no
     /// later step is wide enough to give up a long one.
     fn fewest_routes(&self) -> Chain<SharedAirspace> {
-        let sectors = Sectors::new(self.search.network);
+        let Search { network, budget, .. } = *self.search;
+        let sectors = Sectors::new(network);
         let mut num_routes = 1;
         loop {
             let mut routes = sectors.routes(&vec![1.0; num_routes]);
-            improve_routes(self.search.network, self.search.budget, &mut routes);
+            improve_routes(network, budget, &mut routes);
             let chain = self.search.chain_from(&routes, self.index as u64);
-            if num_routes == self.search.network.num_routes || chain.best.max_route_cost() <= self.search.goal_cap() {
+            if num_routes == network.num_routes || self.search.is_allowed(&chain.best) {
                 return chain;
             }
-            num_routes += 1;
+            // Routes that are full on average are more than enough to try.
+            let num_full = (FULL_SHARE * chain.best.total / self.search.goal_cap()) as usize;
+            num_routes = if budget.is_time_over() { network.num_routes } else { num_full.max(num_routes + 1) };
+            num_routes = num_routes.min(network.num_routes);
         }
     }
 }

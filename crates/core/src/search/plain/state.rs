@@ -4,6 +4,7 @@
 //! carry their cost and size. Nothing here depends on a visit's position within its route, and nothing but the touched nodes is
 //! copied when a change is taken back: one step of the search costs O(visits touched), whatever the length of the routes.
 
+use super::limits::excess;
 use super::network::Network;
 use crate::search::objective::RouteCosts;
 
@@ -50,6 +51,8 @@ pub(crate) struct State {
     /// Legs and service per route.
     pub route_costs: Vec<f64>,
     pub route_sizes: Vec<u32>,
+    /// What each route uses of each limit, in shares of it: route by route. Empty where there is no limit.
+    pub route_uses: Vec<f64>,
     pub total: f64,
 }
 
@@ -126,6 +129,7 @@ impl State {
             nodes: vec![absent; num_nodes],
             route_costs: vec![0.0; network.num_routes],
             route_sizes: vec![0; network.num_routes],
+            route_uses: vec![0.0; network.num_routes * network.limits.len()],
             total: 0.0,
         };
         for route in 0..network.num_routes {
@@ -149,6 +153,46 @@ impl State {
         self.total += cost - self.route_costs[route];
         self.route_costs[route] = cost;
         self.route_sizes[route] = visits.len() as u32;
+        for limit in 0..network.limits.len() {
+            let mut sum = 0.0;
+            let mut last = depot;
+            for &node in visits.iter().chain([&depot]) {
+                sum += network.use_of_leg(limit, last, node) + network.limits.of_visit(limit, node);
+                last = node;
+            }
+            self.route_uses[route * network.limits.len() + limit] = sum;
+        }
+    }
+
+    /// By how much the routes exceed limits, in shares of them, summed.
+    pub fn excess(&self) -> f64 {
+        excess(&self.route_uses)
+    }
+
+    /// What a route uses of the limit that it uses most of, in shares of it; 0 where there is no limit.
+    pub fn greatest_use(&self, network: &Network, route: usize) -> f64 {
+        let num_limits = network.limits.len();
+        self.route_uses[route * num_limits..(route + 1) * num_limits].iter().copied().fold(0.0, f64::max)
+    }
+
+    /// By how much more a route would exceed limits with `visit` put behind the node `after`.
+    pub fn excess_added(&self, network: &Network, visit: u32, after: u32) -> f64 {
+        let Node { next, route, .. } = self.nodes[after as usize];
+        let num_limits = network.limits.len();
+        (0..num_limits)
+            .map(|limit| {
+                let uses = self.route_uses[route as usize * num_limits + limit];
+                excess(&[uses + use_added(network, limit, after, &[visit], next)]) - excess(&[uses])
+            })
+            .sum()
+    }
+
+    fn change_uses(&mut self, network: &Network, route: u32, before: u32, visits: &[u32], after: u32, sign: f64) {
+        let num_limits = network.limits.len();
+        for limit in 0..num_limits {
+            self.route_uses[route as usize * num_limits + limit] +=
+                sign * use_added(network, limit, before, visits, after);
+        }
     }
 
     /// Visits per route in flying order; empty routes are left out.
@@ -171,13 +215,18 @@ impl State {
 
     /// What its routes cost.
     pub fn costs(&self) -> RouteCosts {
-        RouteCosts { longest: self.max_route_cost(), total: self.total }
+        RouteCosts { longest: self.max_route_cost(), total: self.total, excess: self.excess() }
     }
 
     /// Cost of the longest route.
     #[inline]
     pub fn max_route_cost(&self) -> f64 {
         self.route_costs.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Whether no route costs more than `floor`, and none exceeds a limit.
+    pub fn is_down_to(&self, floor: f64) -> bool {
+        self.max_route_cost() <= floor && self.excess() == 0.0
     }
 
     /// The costliest route, the first of equals.
@@ -209,6 +258,9 @@ impl State {
     pub fn insert(&mut self, network: &Network, visit: u32, place: &Place, touched: &mut Touched) {
         let &Place { after, leg_in, leg_out, added } = place;
         let Node { next, route, .. } = self.nodes[after as usize];
+        if network.limits.len() > 0 {
+            self.change_uses(network, route, after, &[visit], next, 1.0);
+        }
         self.link(network, after, visit, leg_in);
         self.link(network, visit, next, leg_out);
         self.nodes[visit as usize].route = route;
@@ -252,6 +304,9 @@ impl State {
             visit = node.next;
         }
         let leg = network.leg(previous, visit);
+        if network.limits.len() > 0 {
+            self.change_uses(network, route, previous, &removed[removed.len() - count..], visit, -1.0);
+        }
         self.link(network, previous, visit, leg);
         self.route_costs[route as usize] -= saved - leg;
         self.route_sizes[route as usize] -= count as u32;
@@ -269,8 +324,20 @@ impl State {
             self.route_costs[route as usize] = other.route_costs[route as usize];
             self.route_sizes[route as usize] = other.route_sizes[route as usize];
         }
+        self.route_uses.copy_from_slice(&other.route_uses);
         self.total = other.total;
     }
+}
+
+/// What a route uses more of a limit, in which `visits` come between two nodes that follow each other.
+fn use_added(network: &Network, limit: usize, before: u32, visits: &[u32], after: u32) -> f64 {
+    let mut sum = -network.use_of_leg(limit, before, after);
+    let mut last = before;
+    for &visit in visits {
+        sum += network.use_of_leg(limit, last, visit) + network.limits.of_visit(limit, visit);
+        last = visit;
+    }
+    sum + network.use_of_leg(limit, last, after)
 }
 
 #[cfg(test)]
