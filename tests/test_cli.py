@@ -156,7 +156,7 @@ def test_plan_writes_everything_a_crew_needs(run: Run, tmp_path: Path) -> None:
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written == {"plan.json", "plan.geojson", "missions"}
     missions = {path.name for path in (tmp_path / "out" / "missions").iterdir()}
-    drones = {f"drone-{drone}.{kind}" for drone in (1, 2, 3) for kind in ("plan", "waypoints")}
+    drones = {f"drone-{drone}.{kind}" for drone in (1, 2, 3) for kind in ("plan", "waypoints", "param", "params")}
     assert missions == drones | {"README.txt"}
 
 
@@ -188,12 +188,19 @@ def test_an_infeasible_plan_is_a_result(run: Run, tmp_path: Path) -> None:
     fleet.write_text("num_drones = 3\nmax_route_duration_s = 60.0\n")
     command = ("plan", FARM, "--fleet", fleet, "--no-figure", "-o", tmp_path / "out")
     ran = run(*command)
-    assert ran.code == 0
-    assert "Violation" in ran.out
+    assert ran.code == 3
+    # Told once, with the remedy.
+    assert "Violation" not in ran.out
     assert ran.err.startswith("No mission was written, because this plan cannot be flown\n  1. ")
     assert run(*command, "--require-feasible").code == 3
+    judged = run("evaluate", tmp_path / "out" / "plan.json")
+    assert judged.code == 0
+    assert "Violation: drone 1 is under way for" in " ".join(judged.out.split())
     with_json = run(*command, "--json")
-    assert not json.loads(with_json.out)["summary"]["is_feasible"]
+    plan = json.loads(with_json.out)
+    assert not plan["summary"]["is_feasible"]
+    assert {violation["kind"] for violation in plan["violations"]} == {"too_slow", "out_of_reach"}
+    assert all(violation["message"] and violation["remedy"] for violation in plan["violations"])
     assert json.loads(with_json.err)["status"] == "no_missions"
 
 
@@ -204,9 +211,9 @@ def test_nothing_of_an_earlier_plan_stays_to_be_flown(run: Run, tmp_path: Path) 
     assert (out / "plan.png").exists()
     fleet = tmp_path / "fleet.toml"
     fleet.write_text("num_drones = 3\nmax_route_duration_s = 60.0\n")
-    assert run("plan", FARM, "--fleet", fleet, "--no-figure", "-o", out).code == 0
+    assert run("plan", FARM, "--fleet", fleet, "--no-figure", "-o", out).code == 3
     left = {path.suffix for path in out.rglob("*") if path.is_file()}
-    assert not {".plan", ".waypoints", ".png", ".svg"} & left
+    assert left == {".json", ".geojson"}
 
 
 def test_generate_is_seeded(run: Run, tmp_path: Path) -> None:

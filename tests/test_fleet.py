@@ -142,6 +142,8 @@ def test_drones_come_home_in_layers_of_their_own() -> None:
     assert Fleet(2, layer_spacing_m=0.0).return_height_of(1) == 15.0
     # The plan counts with the highest layer: 3 m more take 3 / 2.5 s up and 3 / 1.5 s down.
     assert Fleet(2).way_home_fixed_s - Fleet(1).way_home_fixed_s == pytest.approx(3 / 2.5 + 3 / 1.5)
+    assert Fleet(2).takeoff_s - Fleet(1).takeoff_s == pytest.approx(3 / 2.5 + 3 / 1.5)
+    assert [Fleet(3).way_out_height_of(drone) for drone in range(3)] == [7.0, 10.0, 13.0]
 
 
 def test_every_setting_has_a_range_and_a_source() -> None:

@@ -17,20 +17,22 @@ from pondhop.errors import Fault
 from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import Fleet
 from pondhop.missions import write_missions
-from pondhop.missions.mavlink import MAX_NUM_ITEMS, MavlinkItem, from_mavlink, to_mavlink
-from pondhop.missions.mission import Action, Mission, MissionItem, build_mission, check_mission
-from pondhop.missions.qgroundcontrol import parse_qgroundcontrol_plan, qgroundcontrol_plan
-from pondhop.missions.waypoints import parse_waypoints, waypoints
+from pondhop.missions.autopilots import ARDUPILOT
+from pondhop.missions.check import broken_rules
+from pondhop.missions.formats.qgroundcontrol import parse_qgroundcontrol_plan, qgroundcontrol_plan
+from pondhop.missions.formats.waypoints import parse_waypoints, waypoints
+from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
+from pondhop.missions.mission import Action, Mission, MissionItem, build_mission
 
 STYLES = [Fleet(num_drones=2), Fleet(num_drones=2, sampling="splashdown", dwell_s=30)]
 
 
 def build(fleet: Fleet, route: list[int], **changes: object) -> Mission:
-    return build_mission("drone-1", make_farm(**changes), fleet, route)
+    return build_mission(0, make_farm(**changes), fleet, route)
 
 
 def check(mission: Mission) -> list[Fault]:
-    return check_mission(mission, max_num_items=MAX_NUM_ITEMS)
+    return [rule.fault for rule in broken_rules(mission, ARDUPILOT)]
 
 
 def with_item(mission: Mission, index: int, **changes: Any) -> Mission:
@@ -107,15 +109,12 @@ def test_every_written_file_reads_back_as_the_mission(tmp_path: Path, fleet: Fle
     farm = make_farm(no_fly=((square(-89.005, 36.995, 0.001),),))
     paths = write_missions(tmp_path, make_plan(farm, fleet, [[0, 1, 2], [4, 3]]))
     assert {path.name for path in paths} == {
-        "drone-1.plan",
-        "drone-1.waypoints",
-        "drone-2.plan",
-        "drone-2.waypoints",
+        *(f"drone-{drone}{suffix}" for drone in (1, 2) for suffix in (".plan", ".waypoints", ".param", ".params")),
         "README.txt",
     }
     assert set(tmp_path.iterdir()) == set(paths)
     for name, route in (("drone-1", [0, 1, 2]), ("drone-2", [4, 3])):
-        mission = build_mission(name, farm, fleet, route)
+        mission = build_mission(int(name[-1]) - 1, farm, fleet, route)
         assert parse_qgroundcontrol_plan((tmp_path / f"{name}.plan").read_text(), name) == mission
         read = parse_waypoints((tmp_path / f"{name}.waypoints").read_text(), name)
         assert read == replace(mission, fences=(), no_fly=())
@@ -128,12 +127,84 @@ def test_the_readme_tells_the_crew_what_splashdown_needs(tmp_path: Path) -> None
     assert "drone-2: 2 ponds" in text
 
 
+def test_every_drone_flies_out_in_a_layer_of_its_own() -> None:
+    fleet = Fleet(num_drones=3, layer_spacing_m=4.0)
+    third = build_mission(2, make_farm(), fleet, [1, 0])
+    pond = (-89.001, 37.001)
+    assert third.items[:4] == (
+        MissionItem(Action.TAKEOFF, DEPOT, 15.0),
+        MissionItem(Action.CHANGE_SPEED, speed_m_s=5.0),
+        MissionItem(Action.WAYPOINT, pond, 15.0),
+        MissionItem(Action.WAYPOINT, pond, 7.0),
+    )
+    assert check(third) == []
+    flat = build_mission(2, make_farm(), replace(fleet, layer_spacing_m=0.0), [1, 0])
+    assert len(flat.items) == len(third.items) - 1
+
+
+def parameters(path: Path) -> dict[str, float]:
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    return {name: float(value) for name, _, value in (line.partition(",") for line in lines)}
+
+
+def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:
+    fleet = Fleet(num_drones=2, speed_m_s=6.0, sampling="splashdown", dwell_s=20, layer_spacing_m=5.0)
+    write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]]))
+    first, second = (parameters(tmp_path / f"drone-{drone}.param") for drone in (1, 2))
+    assert (first["RTL_ALT"], second["RTL_ALT"]) == (1500, 2000)
+    assert (first["WPNAV_SPEED"], first["WP_SPD"], first["RTL_SPEED"]) == (600, 6, 1000)
+    assert first["MIS_OPTIONS"] == 4
+    # Twice the stay and half a minute: a pause on the water begins the stay anew.
+    assert first["DISARM_DELAY"] == 70
+    assert (first["FENCE_TYPE"], first["FENCE_ENABLE"]) == (7, 1)
+    # P0 lies 178 m west and 111 m north of home, so 210 m away; the highest flight is the way home.
+    assert first["FENCE_RADIUS"] == pytest.approx(210 + 50, abs=1)
+    assert (first["FENCE_ALT_MAX"], second["FENCE_ALT_MAX"]) == (30, 35)
+    assert (first["BATT_FS_LOW_ACT"], first["FS_GCS_ENABLE"]) == (2, 1)
+    # QGroundControl: the same values in five columns.
+    rows = [line.split("\t") for line in (tmp_path / "drone-1.params").read_text().splitlines() if line[0] != "#"]
+    assert {row[2]: float(row[3]) for row in rows} == first
+    assert all(len(row) == 5 and row[:2] == ["1", "1"] and row[4] in {"6", "9"} for row in rows)
+
+
+def test_a_hover_dip_without_areas_is_told_only_what_it_needs(tmp_path: Path) -> None:
+    write_missions(tmp_path, make_plan(make_farm(fences=()), Fleet(1), [[0, 1, 2, 3, 4]]))
+    names = set(parameters(tmp_path / "drone-1.param"))
+    assert not names & {"MIS_OPTIONS", "DISARM_DELAY", "FENCE_ENABLE"}
+    assert {"WPNAV_SPEED", "RTL_ALT", "FENCE_RADIUS", "BATT_FS_LOW_ACT"} <= names
+
+
+def test_the_readme_tells_what_a_crew_must_know(tmp_path: Path) -> None:
+    fleet = Fleet(num_drones=2, sampling="splashdown", battery_wh=95)
+    write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]]))
+    text = " ".join((tmp_path / "README.txt").read_text().split())
+    for words in (
+        "drone-2: 2 ponds",
+        "takes off at 0:10, flies out 10 m high, comes home 18 m high",
+        "energy: take-off",
+        "A battery gives 71.2 Wh above its reserve of 25 %",
+        "RTL_ALT 1500",
+        "DISARM_DELAY 40",
+        "nothing happens when a battery runs low",
+        "Start drone 1, then each drone 10 s after",
+        "AUTO_OPTIONS 3",
+        "Above 5 m/s no landing on a pond ends",
+    ):
+        assert words in text, words
+    write_missions(tmp_path, make_plan(make_farm(), Fleet(num_drones=2), [[0, 1, 2], [4, 3]]))
+    text = " ".join((tmp_path / "README.txt").read_text().split())
+    assert "Flight time is unchecked: the fleet names no battery_wh. The hungriest route takes" in text
+    assert "no landing on a pond" not in text
+
+
 def test_missions_of_an_earlier_plan_are_removed(tmp_path: Path) -> None:
     write_missions(tmp_path, two_drones())
     (tmp_path / "drone-2.plan.bak").write_text("the user's own")
     write_missions(tmp_path, make_plan(make_farm(), Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "README.txt",
+        "drone-1.param",
+        "drone-1.params",
         "drone-1.plan",
         "drone-1.waypoints",
         "drone-2.plan.bak",
@@ -147,6 +218,7 @@ def test_missions_of_an_earlier_plan_are_removed(tmp_path: Path) -> None:
         (2, {"position": (math.nan, 37.0)}, "longitude is nan"),
         (2, {"position": None}, "no position"),
         (2, {"height_m": 122.0}, "height is 122.0 m"),
+        (2, {"height_m": 121.95}, "height is 121.95 m"),
         (2, {"height_m": math.inf}, "height is inf"),
         (2, {"height_m": 0.0}, "height is 0 m"),
         (4, {"hold_s": 2.5}, "hold is 2.5 s"),
@@ -177,12 +249,27 @@ def test_legs_stay_inside_every_fence_and_outside_no_fly_zones() -> None:
         no_fly=((square(-89.001, 37.0005, 0.0001),),),
     )
     assert [(fault.path, fault.message) for fault in check(mission)] == [
-        ("drone-1, leg from home to pond P0", "it is not inside fence 2"),
-        ("drone-1, leg from pond P0 to pond P3", "it is not inside fence 2"),
-        ("drone-1, leg from pond P3 to pond P4", "it is not inside fence 2"),
-        ("drone-1, leg from pond P4 to home", "it is not inside fence 2"),
-        ("drone-1, leg from home to pond P0", "it is not outside no-fly zone 1"),
+        (
+            "drone-1, fence 2",
+            "4 of 5 legs are not inside it (leg from home to pond P0, leg from pond P0 to pond P3, "
+            "leg from pond P3 to pond P4, leg from pond P4 to home)",
+        ),
+        ("drone-1, no-fly zone 1", "1 of 5 legs are not outside it (leg from home to pond P0)"),
     ]
+    assert [rule.kind for rule in broken_rules(mission, ARDUPILOT)] == ["outside_fence", "crosses_no_fly"]
+
+
+def test_legs_keep_a_margin_to_fences_and_no_fly_zones() -> None:
+    # From home north to P2, 111 m away; the fence ends 3 m behind the pond.
+    fence = ((-89.001, 36.999), (-88.999, 36.999), (-88.999, 37.001027), (-89.001, 37.001027), (-89.001, 36.999))
+    mission = build(Fleet(num_drones=1), [2], fences=((fence,),))
+    assert broken_rules(mission, ARDUPILOT, margin_m=2.5) == []
+    (rule,) = broken_rules(mission, ARDUPILOT, margin_m=3.5)
+    assert "2 of 3 legs are not inside it by at least 3.5 m" in rule.fault.message
+    zone = ((-88.99999, 37.0004), (-88.999, 37.0004), (-88.999, 37.0006), (-88.99999, 37.0006), (-88.99999, 37.0004))
+    mission = build(Fleet(num_drones=1), [2], no_fly=((zone,),))
+    assert broken_rules(mission, ARDUPILOT, margin_m=0.5) == []
+    assert [rule.kind for rule in broken_rules(mission, ARDUPILOT, margin_m=1.5)] == ["crosses_no_fly"]
 
 
 def test_a_fence_that_crosses_itself_is_refused() -> None:
@@ -198,13 +285,14 @@ def test_too_many_items_are_refused_for_every_drone(tmp_path: Path) -> None:
     with pytest.raises(InvalidInput) as error:
         write_missions(folder, make_plan(farm, fleet, [list(range(162)), list(range(162, 500))]))
     assert [(fault.path, fault.message) for fault in error.value.faults] == [
-        ("drone-1", "it has 652 items with home, the autopilot stores 650"),
-        ("drone-2", "it has 1356 items with home, the autopilot stores 650"),
+        ("drone-1", "it has 652 items with home, ArduPilot stores 650"),
+        ("drone-2", "it has 1357 items with home, ArduPilot stores 650"),
     ]
-    assert "more drones" in error.value.faults[0].action
+    assert error.value.faults[0].action == "share its ponds among 2 drones, or fly them in 2 flights"
+    assert error.value.faults[1].action == "share its ponds among 3 drones, or fly them in 3 flights"
     assert not folder.exists()
     # One pond less fits: 3 items, 4 a pond, and home.
-    assert check(build_mission("drone-1", farm, fleet, list(range(161)))) == []
+    assert check(build_mission(0, farm, fleet, list(range(161)))) == []
 
 
 def test_all_faults_of_all_missions_are_told_and_nothing_is_written(tmp_path: Path) -> None:
@@ -318,7 +406,7 @@ def test_mavsdk_imports_every_written_file(tmp_path: Path, mavsdk_mission_raw: A
     farm = make_farm(no_fly=((square(-89.005, 36.995, 0.001),),))
     write_missions(tmp_path, make_plan(farm, fleet, [[0, 1, 2], [4, 3]]))
     for name, route in (("drone-1", [0, 1, 2]), ("drone-2", [4, 3])):
-        expected = [to_mavlink(item) for item in build_mission(name, farm, fleet, route).items]
+        expected = [to_mavlink(item) for item in build_mission(int(name[-1]) - 1, farm, fleet, route).items]
         from_plan = mavsdk_mission_raw.import_qgroundcontrol_mission(str(tmp_path / f"{name}.plan"))
         assert len(from_plan.mission_items) == len(expected) + 1  # MAVSDK puts home first
         assert len(from_plan.geofence_items) == 8

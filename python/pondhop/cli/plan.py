@@ -80,7 +80,7 @@ def plan(
     if written.faults:
         heading = "No mission was written, because this plan cannot be flown"
         print_faults(written.faults, "no_missions", heading, as_json)
-    if require_feasible and (written.faults or not farm_plan.solution.plan.is_feasible):
+    if written.faults or (require_feasible and not farm_plan.is_feasible):
         raise typer.Exit(EXIT_INFEASIBLE)
 
 

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from pondhop.files.routes_json import Judgement
+from pondhop.planners import LIMIT_KINDS
 from pondhop.solution import FarmPlan, Solution
 from pondhop.units import (
     Units,
@@ -51,8 +52,14 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
         )
     console.print(f"Planner {solution.planner}, seed {solution.seed}, {duration_of_planning(solution.elapsed_s)}.")
     _print_assumptions(console, farm_plan, units)
+
+
+def print_violations(farm_plan: FarmPlan) -> None:
+    """Print every rule that a plan of a farm breaks, and what to do about it."""
+    console = Console(highlight=False, markup=False)
     for violation in farm_plan.violations:
-        console.print(f"Violation: {violation.message} -> {violation.remedy}", style="bold red")
+        drone = "" if violation.drone is None or violation.kind in LIMIT_KINDS else f"drone {violation.drone}, "
+        console.print(f"Violation: {drone}{violation.message} -> {violation.remedy}", style="bold red")
 
 
 def duration_of_planning(elapsed_s: float) -> str:

@@ -117,14 +117,16 @@ def evaluate(
     from pondhop.cli import printed
 
     if farms is None:
+        from pondhop import missions
         from pondhop.files.plan_json import read_plan_json
 
-        farm_plan = read_plan_json(plans)
+        farm_plan = missions.judged(read_plan_json(plans))
         if as_json:
             typer.echo(plans.read_text(), nl=False)
         else:
             printed.print_farm_plan(farm_plan)
-        is_feasible = farm_plan.solution.plan.is_feasible
+            printed.print_violations(farm_plan)
+        is_feasible = farm_plan.is_feasible
     else:
         judgements = _judgements(plans, farms, routes)
         if as_json:

@@ -41,6 +41,7 @@ FLEET_KEYS = (
     "max_route_duration_s",
     "takeoff_interval_s",
     "layer_spacing_m",
+    "fence_margin_m",
     "battery_wh",
     "reserve_percent",
     "health_percent",

@@ -43,8 +43,11 @@ class Fleet:
     max_route_length_m, max_route_duration_s
         What one drone can fly; ``None`` where nothing limits it.
     takeoff_interval_s, layer_spacing_m
-        What keeps drones apart at home: the time between two take-offs, and how much higher each drone comes home than
-        the one before it; ``None``: 3 m, or less where so many drones would come home above the highest allowed flight.
+        What keeps drones apart at home: the time between two take-offs, and how much higher each drone flies out to its
+        first pond and comes home than the one before it; ``None``: 3 m, or less where so many drones would come home
+        above the highest allowed flight.
+    fence_margin_m
+        How far every leg must stay inside of fences and outside of no-fly zones.
     battery_wh, reserve_percent, health_percent
         What the battery of a drone holds when new and full, how much of that stays unused, and how much of it is left
         with age. ``None``: unknown, and flight time is not checked.
@@ -80,6 +83,7 @@ class Fleet:
     max_route_duration_s: float | None = None
     takeoff_interval_s: float = 10.0
     layer_spacing_m: float | None = None
+    fence_margin_m: float = 2.0
     battery_wh: float | None = None
     reserve_percent: float = 25.0
     health_percent: float = 100.0
@@ -144,11 +148,18 @@ class Fleet:
         The lowest comes at ``return_height_m``, but not below the transit height: an autopilot does not descend for
         the way home.
         """
-        lowest_m = max(self.return_height_m, self.transit_height_m)
+        return max(self.return_height_m, self.transit_height_m) + self._layer_m(drone)
+
+    def way_out_height_of(self, drone: int) -> float:
+        """Return the height at which a drone flies to its first pond, in metres; drones count from 0."""
+        return self.transit_height_m + self._layer_m(drone)
+
+    def _layer_m(self, drone: int) -> float:
         spacing_m = self.layer_spacing_m
         if spacing_m is None:
-            spacing_m = min(LAYER_SPACING_M, (MAX_HEIGHT_M - lowest_m) / max(1, self.num_drones - 1))
-        return lowest_m + drone * spacing_m
+            room_m = MAX_HEIGHT_M - max(self.return_height_m, self.transit_height_m)
+            spacing_m = min(LAYER_SPACING_M, room_m / max(1, self.num_drones - 1))
+        return drone * spacing_m
 
     @property
     def usable_energy_j(self) -> float:

@@ -56,6 +56,7 @@ NUMBERS = {
     "return_loiter_s": Setting(0.0, 600.0, "published"),
     "return_extra_s": Setting(0.0, 600.0, "measured"),
     "layer_spacing_m": Setting(0.0, 50.0, "assumed"),
+    "fence_margin_m": Setting(0.0, 1_000.0, "published"),
     "takeoff_interval_s": Setting(0.0, 600.0, "assumed"),
     "hover_power_w": Setting(0.0, 1e5, "measured"),
     "drag_power_w_per_m3_s3": Setting(0.0, 1e4, "measured"),

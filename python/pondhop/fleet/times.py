@@ -44,9 +44,15 @@ def landing_s(fleet: Fleet, height_m: float) -> float:
 
 
 def takeoff_s(fleet: Fleet) -> float:
-    """Return the time of the first take-off to the transit height, with what the first leg takes more than others."""
+    """Return the time of the first take-off, with what the first leg takes more than others.
+
+    Drones fly to their first pond in layers, and go down to the transit height there; this is the time of the highest,
+    so that no drone is later than planned.
+    """
     extra_s = fleet.first_leg_extra_s if fleet.sampling == "hover-dip" else 0.0
-    return fleet.spool_up_s + fleet.climb_extra_s + climb_s(fleet, fleet.transit_height_m) + extra_s
+    height_m = fleet.way_out_height_of(fleet.num_drones - 1)
+    down_s = (height_m - fleet.transit_height_m) / fleet.descent_speed_m_s
+    return fleet.spool_up_s + fleet.climb_extra_s + climb_s(fleet, height_m) + down_s + extra_s
 
 
 def sampling_s(fleet: Fleet) -> float:
@@ -98,8 +104,10 @@ def landing_j(fleet: Fleet, height_m: float) -> float:
 def takeoff_j(fleet: Fleet) -> float:
     """Return the energy of `takeoff_s`; spooling up draws next to nothing."""
     extra_s = fleet.first_leg_extra_s if fleet.sampling == "hover-dip" else 0.0
-    lift_j = fleet.climb_extra_s * fleet.liftoff_power_w + climb_j(fleet, fleet.transit_height_m)
-    return lift_j + extra_s * fleet.hover_power_w
+    height_m = fleet.way_out_height_of(fleet.num_drones - 1)
+    lift_j = fleet.climb_extra_s * fleet.liftoff_power_w + climb_j(fleet, height_m)
+    down_j = descent_j(fleet, height_m - fleet.transit_height_m, fleet.descent_speed_m_s)
+    return lift_j + down_j + extra_s * fleet.hover_power_w
 
 
 def sampling_j(fleet: Fleet, duration_s: float) -> float:

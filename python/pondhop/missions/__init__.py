@@ -1,31 +1,45 @@
-"""One checked mission a drone: QGroundControl ``.plan`` and ``.waypoints`` files for ArduPilot Copter."""
+"""One checked mission a drone, with the parameters it needs and what the crew must know.
+
+`mission` builds neutral items, `check` holds the rules, `autopilots` what an autopilot stores and must be set to,
+`formats` the files that ground stations load, `parameters` those they set a drone by, `readme` the text for the crew.
+"""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Container
+from dataclasses import replace
 from pathlib import Path
 
 from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
-from pondhop.missions.mavlink import MAX_NUM_ITEMS
-from pondhop.missions.mission import Mission, build_mission, check_mission
-from pondhop.missions.qgroundcontrol import parse_qgroundcontrol_plan, qgroundcontrol_plan
-from pondhop.missions.waypoints import parse_waypoints, waypoints
+from pondhop.missions.autopilots import ARDUPILOT
+from pondhop.missions.check import broken_rules
+from pondhop.missions.formats import FORMATS
+from pondhop.missions.mission import Mission, build_mission
+from pondhop.missions.parameters import (
+    MISSION_PLANNER_SUFFIX,
+    QGROUNDCONTROL_SUFFIX,
+    mission_planner_parameters,
+    qgroundcontrol_parameters,
+)
+from pondhop.missions.readme import crew_readme
 from pondhop.solution import FarmPlan, FarmViolation
 
-__all__ = ["obstacles", "write_missions"]
+__all__ = ["README", "is_mission_file", "judged", "mission_texts", "obstacles", "write_missions"]
 
-_MISSION_FILE = re.compile(r"drone-[1-9][0-9]*\.(plan|waypoints)")
+README = "README.txt"
+
+_SUFFIXES = (*(mission_format.suffix for mission_format in FORMATS), MISSION_PLANNER_SUFFIX, QGROUNDCONTROL_SUFFIX)
+_MISSION_FILE = re.compile(rf"drone-[1-9][0-9]*({'|'.join(map(re.escape, _SUFFIXES))})")
 
 
 def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[Path]:
-    """Write one ``drone-N.plan`` and one ``drone-N.waypoints`` per route, and a ``README.txt`` for the flight crew.
+    """Write the missions of a plan, a parameter file a drone and ground station, and a ``README.txt`` for the crew.
 
-    Every mission is checked first (see `pondhop.missions.mission.check_mission`), and every text is read back and must
-    give the same mission. Missions of an earlier plan in the folder are removed, also where the new ones are refused:
-    no drone is to fly one of them.
+    Every mission is checked first (see `pondhop.missions.check.broken_rules`), and every text is read back and must
+    give the same mission. Files of an earlier plan in the folder are removed, also where the new ones are refused: no
+    drone is to fly one of them.
 
     Parameters
     ----------
@@ -42,30 +56,49 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     Raises
     ------
     InvalidInput
-        With every broken rule of every mission; then nothing is written.
+        With everything that keeps the plan from being flown; then nothing is written.
     OSError
         If a file cannot be written.
     """
     folder = Path(folder)
-    missions = _missions(farm_plan)
+    try:
+        texts = {folder / name: text for name, text in mission_texts(farm_plan).items()}
+    except InvalidInput:
+        _remove_missions(folder, keep=set())
+        raise
+    write_all(texts)
+    _remove_missions(folder, keep={path.name for path in texts})
+    return list(texts)
+
+
+def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
+    """Return what `write_missions` writes: name of the file -> text.
+
+    Raises
+    ------
+    InvalidInput
+        As `write_missions`.
+    """
     faults = [
         Fault(_place(violation), violation.message, violation.remedy)
         for violation in (*farm_plan.violations, *(obstacles(farm_plan) if not farm_plan.obstacles else ()))
         if violation.kind != "unserved"
     ]
+    missions = _missions(farm_plan)
     if not missions:
         faults.append(Fault("routes", "the plan has no route", "plan at least one pond"))
     if faults:
-        _remove_missions(folder, keep=())
         raise InvalidInput(faults)
     texts = {}
-    for mission in missions:
-        texts[folder / f"{mission.name}.plan"] = _plan_text(mission)
-        texts[folder / f"{mission.name}.waypoints"] = _waypoints_text(mission)
-    texts[folder / "README.txt"] = _readme(farm_plan)
-    write_all(texts)
-    _remove_missions(folder, keep=texts)
-    return list(texts)
+    for drone, mission in enumerate(missions):
+        for mission_format in FORMATS:
+            texts[f"{mission.name}{mission_format.suffix}"] = mission_format.checked_text(mission)
+        parameters = ARDUPILOT.parameters(farm_plan, drone)
+        title = f"{mission.name}: what {ARDUPILOT.name} Copter must be set to"
+        texts[f"{mission.name}{MISSION_PLANNER_SUFFIX}"] = mission_planner_parameters(title, parameters)
+        texts[f"{mission.name}{QGROUNDCONTROL_SUFFIX}"] = qgroundcontrol_parameters(title, parameters)
+    texts[README] = crew_readme(farm_plan, ARDUPILOT)
+    return texts
 
 
 def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
@@ -77,21 +110,28 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
         Its own ``obstacles`` are passed over.
     """
     return tuple(
-        FarmViolation("mission", _message(fault, mission), fault.action, drone=drone)
+        FarmViolation(rule.kind, _message(rule.fault, mission), rule.fault.action, drone=drone)
         for drone, mission in enumerate(_missions(farm_plan), start=1)
-        for fault in check_mission(mission, max_num_items=MAX_NUM_ITEMS)
+        for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
     )
 
 
-def _message(fault: Fault, mission: Mission) -> str:
-    place = fault.path.removeprefix(mission.name).removeprefix(", ")
-    return f"{place}: {fault.message}" if place else fault.message
+def judged(farm_plan: FarmPlan) -> FarmPlan:
+    """Return a plan with all that keeps it from being flown, also what its file does not tell."""
+    known = {(violation.kind, violation.drone) for violation in farm_plan.obstacles}
+    found = [violation for violation in obstacles(farm_plan) if (violation.kind, violation.drone) not in known]
+    return replace(farm_plan, obstacles=(*farm_plan.obstacles, *found))
+
+
+def is_mission_file(name: str) -> bool:
+    """Whether a file of that name is one that this package writes."""
+    return name == README or _MISSION_FILE.fullmatch(name) is not None
 
 
 def _missions(farm_plan: FarmPlan) -> list[Mission]:
     return [
-        build_mission(f"drone-{drone}", farm_plan.farm, farm_plan.fleet, route)
-        for drone, route in enumerate(farm_plan.solution.plan.routes, start=1)
+        build_mission(drone, farm_plan.farm, farm_plan.fleet, route)
+        for drone, route in enumerate(farm_plan.solution.plan.routes)
     ]
 
 
@@ -99,47 +139,12 @@ def _place(violation: FarmViolation) -> str:
     return "the plan" if violation.drone is None else f"drone-{violation.drone}"
 
 
-def _remove_missions(folder: Path, keep: Container[Path]) -> None:
+def _message(fault: Fault, mission: Mission) -> str:
+    place = fault.path.removeprefix(mission.name).removeprefix(", ")
+    return f"{place}: {fault.message}" if place else fault.message
+
+
+def _remove_missions(folder: Path, keep: set[str]) -> None:
     for path in folder.iterdir() if folder.is_dir() else ():
-        if _MISSION_FILE.fullmatch(path.name) and path not in keep:
+        if is_mission_file(path.name) and path.name not in keep:
             path.unlink()
-
-
-def _plan_text(mission: Mission) -> str:
-    text = qgroundcontrol_plan(mission)
-    _confirm(mission, text, parse_qgroundcontrol_plan)
-    return text
-
-
-def _waypoints_text(mission: Mission) -> str:
-    text = waypoints(mission)
-    without_areas = Mission(mission.name, mission.home, mission.speed_m_s, mission.items)
-    _confirm(without_areas, text, parse_waypoints)
-    return text
-
-
-def _confirm(mission: Mission, text: str, parse: Callable[[str, str], Mission]) -> None:
-    if parse(text, mission.name) != mission:
-        raise RuntimeError(f"{mission.name} reads back as another mission than was written: a bug of pondhop")
-
-
-def _readme(farm_plan: FarmPlan) -> str:
-    fleet, plan = farm_plan.fleet, farm_plan.solution.plan
-    rows = [
-        f"  drone-{index + 1}: {len(route)} ponds, {plan.route_lengths[index]:.0f} m, "
-        f"{plan.route_durations_s[index] / 60:.1f} min"
-        for index, route in enumerate(plan.routes)
-    ]
-    needs = [
-        "Splashdown: set bit 2 of the ArduPilot parameter MIS_OPTIONS (add 4) on every drone, or it disarms on the "
-        "first pond and stays there."
-    ]
-    notes = [
-        "For ArduPilot Copter. Load the .plan files in QGroundControl, or the .waypoints files in Mission Planner: the "
-        "same missions, but only .plan holds the fence and the no-fly zones.",
-        f"Heights are above the depot ({fleet.transit_height_m:g} m between ponds); the ground is taken to be flat.",
-        "Every drone takes off at the depot and comes back by RTL, at the height that its parameter RTL_ALT sets.",
-        *(needs if fleet.sampling == "splashdown" else ()),
-        *farm_plan.notes,
-    ]
-    return "\n".join([f"Missions for {farm_plan.farm.name}, {fleet.sampling}", "", *rows, "", *notes]) + "\n"

@@ -11,9 +11,6 @@ from dataclasses import dataclass, replace
 
 from pondhop.missions.mission import POSITIONED, Action, MissionItem
 
-MAX_NUM_ITEMS = 650
-"""What ArduPilot stores on its smaller boards, home included."""
-
 FRAME_GLOBAL = 0
 FRAME_MISSION = 2
 FRAME_GLOBAL_RELATIVE_ALT = 3

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from pondhop.errors import Fault, InvalidInput
+from pondhop.missions.formats.format import MissionFormat
 from pondhop.missions.mavlink import (
     FRAME_GLOBAL,
     NAV_WAYPOINT,
@@ -31,7 +32,7 @@ def waypoints(mission: Mission) -> str:
     Parameters
     ----------
     mission
-        A mission that `pondhop.missions.mission.check_mission` found sound.
+        A mission that `pondhop.missions.check.broken_rules` finds sound.
     """
     longitude, latitude = mission.home
     home = MavlinkItem(NAV_WAYPOINT, FRAME_GLOBAL, (0.0, 0.0, 0.0, 0.0, latitude, longitude, 0.0))
@@ -109,3 +110,6 @@ def _number(text: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"{text} is no finite number")
     return value
+
+
+WAYPOINTS = MissionFormat("Mission Planner", ".waypoints", waypoints, parse_waypoints, has_areas=False)

@@ -10,6 +10,7 @@ from typing import Any
 
 from pondhop.documents.schemas import parse_json
 from pondhop.errors import Fault, InvalidInput
+from pondhop.missions.formats.format import MissionFormat
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Mission, MissionItem
 from pondhop.places import Ring
@@ -25,7 +26,7 @@ def qgroundcontrol_plan(mission: Mission) -> str:
     Parameters
     ----------
     mission
-        A mission that `pondhop.missions.mission.check_mission` found sound.
+        A mission that `pondhop.missions.check.broken_rules` finds sound.
     """
     longitude, latitude = mission.home
     plan = {
@@ -116,3 +117,8 @@ def _item(content: dict[str, Any], number: int, faults: list[Fault]) -> MissionI
 
 def _ring(polygon: list[list[float]]) -> Ring:
     return tuple((longitude, latitude) for latitude, longitude in polygon)
+
+
+QGROUNDCONTROL = MissionFormat(
+    "QGroundControl", ".plan", qgroundcontrol_plan, parse_qgroundcontrol_plan, has_areas=True
+)

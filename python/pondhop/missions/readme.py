@@ -1,0 +1,110 @@
+"""``README.txt`` of a folder of missions: what the crew must know, in the order in which they need it."""
+
+from __future__ import annotations
+
+import math
+from textwrap import fill
+
+from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot
+from pondhop.missions.formats import FORMATS
+from pondhop.solution import FarmPlan
+from pondhop.units import clock_text, counted, duration_text, energy_text, height_text, length_text, speed_text
+
+_WIDTH = 88
+
+
+def crew_readme(farm_plan: FarmPlan, autopilot: Autopilot) -> str:
+    """Return the text."""
+    sections = [
+        [f"Missions for {farm_plan.farm.name}, {farm_plan.fleet.sampling}, for {autopilot.name} Copter"],
+        ["DRONES", *_drones(farm_plan)],
+        ["BATTERY", _battery(farm_plan)],
+        ["SET EVERY DRONE", *_settings(farm_plan, autopilot)],
+        ["START", *_start(farm_plan)],
+        ["WIND", *_wind(farm_plan)],
+        ["KNOW", *_knowledge(farm_plan)],
+    ]
+    return "\n\n".join("\n".join(map(_wrapped, section)) for section in sections) + "\n"
+
+
+def _wrapped(paragraph: str) -> str:
+    indent = " " * (len(paragraph) - len(paragraph.lstrip()))
+    return fill(paragraph, _WIDTH, subsequent_indent=f"{indent}  ", break_long_words=False, break_on_hyphens=False)
+
+
+def _drones(farm_plan: FarmPlan) -> list[str]:
+    fleet, plan = farm_plan.fleet, farm_plan.solution.plan
+    rows = []
+    for drone, route in enumerate(plan.routes):
+        start_s, duration_s = farm_plan.takeoff_times_s[drone], float(plan.route_durations_s[drone])
+        phases = farm_plan.energy_phases(drone)
+        length, energy = length_text(float(plan.route_lengths[drone])), energy_text(phases.total_j)
+        way_out, way_home = height_text(fleet.way_out_height_of(drone)), height_text(fleet.return_height_of(drone))
+        rows += [
+            f"drone-{drone + 1}: {counted(len(route), 'pond')}, {length}, {duration_text(duration_s)}, {energy}",
+            f"  takes off at {clock_text(start_s)}, flies out {way_out} high, comes home {way_home} high, "
+            f"is back at {clock_text(start_s + duration_s)}",
+            f"  energy: take-off {energy_text(phases.takeoff_j)}, legs {energy_text(phases.legs_j)}, "
+            f"sampling {energy_text(phases.sampling_j)}, way home {energy_text(phases.way_home_j)}",
+        ]
+    return [*rows, f"All are back {duration_text(farm_plan.all_back_s)} after the first take-off, in calm air."]
+
+
+def _battery(farm_plan: FarmPlan) -> str:
+    fleet, most = farm_plan.fleet, energy_text(float(farm_plan.solution.plan.route_energies_j.max()))
+    if not math.isfinite(fleet.usable_energy_j):
+        return f"Flight time is unchecked: the fleet names no battery_wh. The hungriest route takes {most}."
+    return (
+        f"A battery gives {energy_text(fleet.usable_energy_j)} above its reserve of {fleet.reserve_percent:g} %; the "
+        f"hungriest route takes {most}. Start every drone with a full battery."
+    )
+
+
+def _settings(farm_plan: FarmPlan, autopilot: Autopilot) -> list[str]:
+    return [
+        "Each drone has parameters of its own: load drone-N.param with Mission Planner, or drone-N.params with "
+        "QGroundControl, into drone N and no other. A name that the drone does not know belongs to another version of "
+        "its firmware.",
+        "For drone-1:",
+        *(f"  {found.name} {found.value:g}: {found.why}" for found in autopilot.parameters(farm_plan, 0)),
+        "WARNING: with the defaults of ArduPilot nothing happens when a battery runs low (BATT_FS_LOW_ACT 0) or the "
+        "ground station is lost (FS_GCS_ENABLE 0). Set BATT_LOW_VOLT and BATT_LOW_MAH for your battery, or "
+        "BATT_FS_LOW_ACT never acts.",
+    ]
+
+
+def _start(farm_plan: FarmPlan) -> list[str]:
+    files = ", ".join(f"drone-N{mission_format.suffix} with {mission_format.name}" for mission_format in FORMATS)
+    return [
+        f"Load {files}: the same mission, but only .plan holds the fence and the no-fly zones.",
+        f"Start drone 1, then each drone {farm_plan.fleet.takeoff_interval_s:g} s after the one before it, in the "
+        "order of their numbers.",
+        "QGroundControl: slide Start Mission. Mission Planner: Actions, Mission Start. From a transmitter: arm, switch "
+        "to AUTO and raise the throttle to the middle, or set AUTO_OPTIONS 3: a drone in AUTO with its throttle down "
+        "disarms after 10 s.",
+    ]
+
+
+def _wind(farm_plan: FarmPlan) -> list[str]:
+    limit = f"{LANDING_WIND_LIMIT_M_S:g} m/s"
+    rows = [
+        f"Do not fly above {limit} of wind. Measured on a simulated 3 kg quadcopter: a landing at home then never "
+        "ends; the drone stands with its motors turning until somebody disarms it."
+    ]
+    if farm_plan.fleet.sampling == "splashdown":
+        rows.append(
+            f"Above {limit} no landing on a pond ends either, and the drone stays there: climb out by hand in LOITER "
+            "or ALT_HOLD, then RTL."
+        )
+    return rows
+
+
+def _knowledge(farm_plan: FarmPlan) -> list[str]:
+    fleet = farm_plan.fleet
+    return [
+        f"Planned: {speed_text(fleet.speed_m_s)}, {height_text(fleet.transit_height_m)} above the depot between ponds, "
+        f"{fleet.service_s:.0f} s at a pond, of these {fleet.dwell_s:g} s of sampling.",
+        "Heights are above the depot; the ground is taken to be flat.",
+        f"The way home (RTL) is flown at {speed_text(fleet.return_speed_m_s)}, at the height of each drone above.",
+        *farm_plan.notes,
+    ]
