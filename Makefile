@@ -11,7 +11,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_QUIET := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo test check train-toy bench docs pins clean
+.PHONY: help build demo test check wheel train-toy bench docs pins clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list
@@ -34,6 +34,9 @@ check: build ## Formatters, linters, types and the rules about layers; warnings 
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+wheel: $(VENV)/installed ## Build a wheel into out/wheels; pip installs it on machines without Rust
+	$(BIN)/maturin build --release --locked --quiet --out out/wheels
 
 train-toy: $(TRAIN_VENV)/installed ## Train toy attention models for a few steps; needs PyTorch, 5 GB in .venv-train
 	$(TRAIN_VENV)/bin/pytest tests/training

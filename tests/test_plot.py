@@ -16,7 +16,7 @@ from pondhop.fleet import Fleet
 from pondhop.palette import ROUTE_COLOURS
 from pondhop.units import clock_text
 
-pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install pondhop[plot]")
+pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install matplotlib")
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

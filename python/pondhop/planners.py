@@ -38,6 +38,9 @@ SEARCH_STEPS_PER_POND, MOST_STEPS_BY_POND = 8_000, 500_000
 LEAST_SEARCH_STEPS_PER_POND, MOST_SEARCH_STEPS = 1_000, 20_000_000
 """Steps by pond on large farms: two milliseconds a pond, up to about a minute."""
 
+ORTOOLS, PYVRP = "ortools>=9.12,<10", "pyvrp>=0.14.1,<0.15"
+"""What the rivals need, as pip is asked for it; the extra ``baselines`` of pyproject.toml says the same."""
+
 STEPS_PER_POND_OF_SIZING = 500
 """Steps of a search that finds out whether a number of drones is enough."""
 
@@ -212,31 +215,31 @@ def _auto(problem: Problem, options: Options) -> Planned:
 
 
 @contextmanager
-def _extra(extra: str) -> Iterator[None]:
-    """Import what needs an extra of the package; name the remedy where it is not installed."""
+def _needed(requirement: str) -> Iterator[None]:
+    """Import what needs a package that may be missing; name the remedy where it is."""
     try:
         yield
     except ModuleNotFoundError as error:
         package, _, _ = (error.name or "").partition(".")
-        action = f"install it with: pip install 'pondhop[{extra}]'"
+        action = f"install it with: pip install '{requirement}'"
         raise InvalidInput([Fault("planner", f"it needs {package}, which is not installed", action)]) from error
 
 
 def _ortools(problem: Problem, options: Options) -> Planned:
-    with _extra("baselines"):
+    with _needed(ORTOOLS):
         from pondhop.baselines import ortools
     return Planned(*ortools.solve_as_authors(problem, time_limit_s=options.time_limit_s))
 
 
 def _ortools_gls(problem: Problem, options: Options) -> Planned:
-    with _extra("baselines"):
+    with _needed(ORTOOLS):
         from pondhop.baselines import ortools
     found = ortools.solve_guided(problem, time_limit_s=options.time_limit_s, max_solutions=options.iterations)
     return Planned(*found)
 
 
 def _pyvrp(problem: Problem, options: Options) -> Planned:
-    with _extra("baselines"):
+    with _needed(PYVRP):
         from pondhop.baselines import pyvrp
     found = pyvrp.solve(problem, seed=options.seed, time_limit_s=options.time_limit_s, iterations=options.iterations)
     return Planned(*found)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch", reason="training needs PyTorch: pip install 'pondhop[train]', or make train-toy")
+torch = pytest.importorskip("torch", reason="training needs PyTorch: pip install torch, or make train-toy")
 
 from pondhop import Problem, evaluate  # noqa: E402
 from pondhop.baselines.attention import train  # noqa: E402

@@ -1,6 +1,7 @@
 """The command line: ``pondhop COMMAND --help`` teaches each command.
 
-Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown, or infeasible with ``--require-feasible``, 1 a bug, 130 stopped with Ctrl-C.
+Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with ``--require-feasible``, breaks a rule),
+1 a bug, 130 stopped with Ctrl-C.
 Results go to stdout, everything else to stderr. Heavy packages are imported where they are used, because
 ``pondhop plan`` should take no longer than planning does.
 """
@@ -64,7 +65,8 @@ def _pondhop(
     - `pondhop generate-farm --ponds 120 --at -90.9,33.4 -o farm.geojson`
     - `pondhop plan farm.geojson --drones 5 -o tonight`
 
-    Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with `--require-feasible`, breaks a rule), 1 a bug.
+    Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with `--require-feasible`, breaks a rule),
+    1 a bug, 130 stopped with Ctrl-C.
     """
     if version:
         from pondhop import __version__

@@ -11,9 +11,12 @@ import typer
 
 from pondhop.cli.shared import (
     EXIT_INFEASIBLE,
+    EXIT_INTERRUPTED,
+    INSTALL_MATPLOTLIB,
     Json,
     RequireFeasible,
     Seed,
+    has_matplotlib,
     parse_lonlat,
     print_faults,
     progress,
@@ -43,7 +46,10 @@ def plan(
         str | None, typer.Option(metavar="LON,LAT", help="Where drones start and land, if the file does not say.")
     ] = None,
     sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
-    figure: Annotated[bool, typer.Option(help="Draw the plan (PNG and SVG).")] = True,
+    figure: Annotated[
+        bool | None,
+        typer.Option("--figure/--no-figure", help="Draw the plan (PNG and SVG); if not said, where it can be."),
+    ] = None,
     units: Annotated[Literal["metric", "us"], typer.Option(help="Units of lengths, for people.")] = "metric",
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
@@ -62,14 +68,15 @@ def plan(
 
     if figure:
         require_matplotlib()
+    is_drawn = has_matplotlib() if figure is None else figure
     chosen_fleet = _fleet(drones, fleet, sampling)
-    with progress("Planning", total=4 if figure else 3) as advance:
+    with progress("Planning", total=4 if is_drawn else 3) as advance:
         read = read_farm(farm, depot=parse_lonlat("--depot", depot) if depot is not None else None)
         advance()
         farm_plan = planners.plan(read, chosen_fleet, progress=search_progress(advance), **options)
         advance()
-        written = outputs.write_outputs(output, farm_plan, has_figure=figure, units=units)
-        advance(size=2.0 if figure else 1.0)
+        written = outputs.write_outputs(output, farm_plan, has_figure=is_drawn, units=units)
+        advance(size=2.0 if is_drawn else 1.0)
     if as_json:
         typer.echo((output / outputs.PLAN_JSON).read_text(encoding="utf-8"), nl=False)
     else:
@@ -77,9 +84,14 @@ def plan(
 
         printed.print_farm_plan(farm_plan, units)
         typer.echo(f"Written to {output}: {', '.join(written.names)}")
+        if figure is None and not is_drawn:
+            typer.echo(f"No picture was drawn, because matplotlib is not installed; {INSTALL_MATPLOTLIB}")
     if written.faults:
         heading = "No mission was written, because this plan cannot be flown"
         print_faults(written.faults, "no_missions", heading, as_json)
+    if farm_plan.solution.is_interrupted:
+        typer.echo("pondhop: stopped with Ctrl-C; this is the best plan until then, and plan.json says so", err=True)
+        raise typer.Exit(EXIT_INTERRUPTED)
     if written.faults or (require_feasible and not farm_plan.is_feasible):
         raise typer.Exit(EXIT_INFEASIBLE)
 

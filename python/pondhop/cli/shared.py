@@ -28,6 +28,8 @@ EXIT_INTERRUPTED = 130
 
 SECONDS_BEFORE_PROGRESS = 2.0
 
+INSTALL_MATPLOTLIB = "install it with: pip install matplotlib"
+
 Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults on stderr as JSON, for programs.")]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
 RequireFeasible = Annotated[bool, typer.Option("--require-feasible", help="Exit with 3 if a plan breaks a rule.")]
@@ -178,13 +180,17 @@ def parse_lonlat(option: str, text: str) -> LonLat:
     return longitude_deg, latitude_deg
 
 
-def require_matplotlib() -> None:
-    """Refuse to draw where matplotlib is not installed, before anything is planned."""
+def has_matplotlib() -> bool:
+    """Whether pictures can be drawn."""
     from importlib.util import find_spec
 
-    if find_spec("matplotlib") is None:
-        action = "install it with: pip install 'pondhop[plot]'; or plan with --no-figure"
-        raise InvalidInput([Fault("figure", "pictures need matplotlib, which is not installed", action)])
+    return find_spec("matplotlib") is not None
+
+
+def require_matplotlib() -> None:
+    """Refuse to draw where matplotlib is not installed, before anything is planned."""
+    if not has_matplotlib():
+        raise InvalidInput([Fault("figure", "pictures need matplotlib, which is not installed", INSTALL_MATPLOTLIB)])
 
 
 def print_faults(faults: Sequence[Fault], status: str, heading: str, as_json: bool) -> None:

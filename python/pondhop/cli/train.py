@@ -42,7 +42,7 @@ def train_am(
     Every two minutes a line shows the greedy routes on farms that are not trained on, and the checkpoint, the output
     with the ending .pt, is renewed. Learning rate and sizes of farms follow the share of training that is done, so a
     run that is resumed for longer starts to decay its learning rate again. Needs PyTorch: `pip install
-    'pondhop[train]'`.
+    torch`.
     """
     checkpoint = output.with_suffix(".pt")
     num_ponds = _num_ponds(ponds, variant)
@@ -57,7 +57,7 @@ def train_am(
         action = "go on with --resume, or give another --output"
         faults.append(Fault("--output", f"{checkpoint} would be overwritten", action))
     if find_spec("torch") is None:
-        action = "install it with: pip install 'pondhop[train]'"
+        action = "install it with: pip install torch"
         faults.append(Fault("train-am", "training needs PyTorch, which is not installed", action))
     if faults or not isinstance(num_ponds, tuple):
         raise InvalidInput(faults)

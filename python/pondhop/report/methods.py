@@ -9,6 +9,7 @@ from typing import Literal
 
 from pondhop.bench.measure import Entrant, TimeLimit, parse_entrants
 from pondhop.errors import Fault, InvalidInput
+from pondhop.planners import ORTOOLS, PYVRP
 from pondhop.report.printed import Column
 
 Kind = Literal["ours", "baseline", "yours"]
@@ -87,7 +88,7 @@ def _limited(planner: str, kind: Kind, seconds: float, *, most_ponds: int = 10_0
     return Method(f"{planner}, {words}", planner, kind, TimeLimit(seconds), most_ponds=most_ponds, needs=needs)
 
 
-BASELINES_EXTRA = "pip install 'pondhop[baselines]'"
+INSTALL_ORTOOLS, INSTALL_PYVRP = f"pip install '{ORTOOLS}'", f"pip install '{PYVRP}'"
 
 SEARCH = _limited("search", "ours", 0.01)
 """The planner that the rivals are compared with, and how long it may take."""
@@ -111,11 +112,11 @@ METHODS: tuple[Method, ...] = (
         "baseline",
         seconds_at_100=10.0,
         growth=2.5,
-        needs=BASELINES_EXTRA,
+        needs=INSTALL_ORTOOLS,
         printed="GLOP",
     ),
-    _limited("ortools-gls", "baseline", 10.0, most_ponds=1000, needs=BASELINES_EXTRA),
-    _limited("pyvrp", "baseline", 10.0, most_ponds=1000, needs=BASELINES_EXTRA),
+    _limited("ortools-gls", "baseline", 10.0, most_ponds=1000, needs=INSTALL_ORTOOLS),
+    _limited("pyvrp", "baseline", 10.0, most_ponds=1000, needs=INSTALL_PYVRP),
     Method("am", "am", "baseline", seconds_at_100=0.005, growth=1.7, most_ponds=2000, printed="AM50"),
     Method(
         "am, 8 symmetries",

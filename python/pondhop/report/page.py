@@ -53,7 +53,9 @@ def require_packages() -> None:
     missing = [package for package in ("jinja2", "markdown_it", "matplotlib") if find_spec(package) is None]
     if missing:
         message = f"the report needs {', '.join(missing)}: not installed"
-        raise InvalidInput([Fault("report", message, "install it with: pip install 'pondhop[report]'")])
+        raise InvalidInput(
+            [Fault("report", message, "install them with: pip install jinja2 markdown-it-py matplotlib")]
+        )
 
 
 def write_report(tables: Tables, folder: Path) -> list[Path]:
