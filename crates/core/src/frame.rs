@@ -39,6 +39,7 @@ impl LocalFrame {
     /// Where a place lies in this frame, in metres. Meant for places within some hundred kilometres of the origin.
     #[must_use]
     pub fn to_local(&self, longitude_deg: f64, latitude_deg: f64) -> Point {
+        // Sine and cosine would do without the wrap; with it, places are to the last bit what plan files of 0.1.0 rest on.
         let east_deg = (longitude_deg - self.longitude_deg + 540.0).rem_euclid(360.0) - 180.0;
         let projected = transverse_mercator(east_deg.to_radians(), latitude_deg.to_radians());
         Point::new(projected.x, projected.y - self.northing_at_origin)
