@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from hand_made import make_farm, make_plan, square, two_drones
 from pondhop import InvalidInput
 from pondhop._core import separation
+from pondhop.documents import atomic
 from pondhop.documents.schemas import load_schema
 from pondhop.farm.model import Farm, Pond
 from pondhop.files.plan_geojson import write_plan_geojson
@@ -284,7 +285,7 @@ def test_a_plan_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     def full(*_arguments: object, **_options: object) -> None:
         raise OSError("disk full")
 
-    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(atomic, "_write", full)
     with pytest.raises(OSError, match="disk full"):
         write_plan_json(path, two_drones())
     assert path.read_bytes() == b"the plan of yesterday"

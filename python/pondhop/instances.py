@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pondhop import _core
+from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 
 MAX_COORDINATE = 1e9
@@ -136,7 +137,7 @@ def read_farms(path: str | Path) -> list[ResearchFarm]:
 
 def write_farms(path: str | Path, farms: Iterable[ResearchFarm]) -> None:
     """Write farms as `read_farms` reads them; every coordinate comes back to the last bit."""
-    Path(path).write_text(farms_json(farms), encoding="utf-8")
+    write_all({Path(path): farms_json(farms)})
 
 
 def farms_json(farms: Iterable[ResearchFarm]) -> str:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from pondhop.documents.atomic import Content, replace_files
 from pondhop.errors import Fault, InvalidInput
-from pondhop.files.plan_geojson import write_plan_geojson
-from pondhop.files.plan_json import write_plan_json
-from pondhop.missions import write_missions
+from pondhop.files.plan_geojson import plan_geojson
+from pondhop.files.plan_json import plan_json
+from pondhop.missions import is_mission_file, mission_texts
 from pondhop.solution import FarmPlan
 from pondhop.units import Units
 
@@ -33,7 +34,10 @@ class Outputs:
 
 
 def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units: Units = "metric") -> Outputs:
-    """Write all that a plan becomes; pictures of an earlier plan are removed where none is drawn.
+    """Write all that a plan becomes, in place of an earlier plan in the folder, as a whole.
+
+    The folder holds all of the new plan or all of the old one, also after a full disk or a signal on the way; files of
+    the user stay.
 
     Parameters
     ----------
@@ -53,25 +57,29 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
 
     Raises
     ------
+    InvalidInput
+        If a folder or the like has the name of one of the files.
     OSError
-        If a file cannot be written.
+        If a file cannot be written; then the folder is as it was.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    write_plan_json(folder / PLAN_JSON, farm_plan)
-    write_plan_geojson(folder / PLAN_GEOJSON, farm_plan)
+    files: dict[str, Content] = {PLAN_JSON: plan_json(farm_plan), PLAN_GEOJSON: plan_geojson(farm_plan)}
     faults: tuple[Fault, ...] = ()
     try:
-        write_missions(folder / MISSIONS, farm_plan)
+        files |= {f"{MISSIONS}/{name}": text for name, text in mission_texts(farm_plan).items()}
     except InvalidInput as error:
         faults = error.faults
     if has_figure:
         from pondhop import plot
 
         axes = plot.plot_plan(farm_plan, units=units)
-        for name in FIGURES:
-            plot.save_figure(axes, folder / name)
-    else:
-        for name in FIGURES:
-            (folder / name).unlink(missing_ok=True)
+        files |= {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
+    replace_files(folder, files, _earlier(folder))
     names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
     return Outputs(tuple(names), faults)
+
+
+def _earlier(folder: Path) -> list[str]:
+    """Files of an earlier plan in the folder; those of the user are none."""
+    missions = folder / MISSIONS
+    names = [path.name for path in missions.iterdir()] if missions.is_dir() else []
+    return [PLAN_JSON, PLAN_GEOJSON, *FIGURES, *(f"{MISSIONS}/{name}" for name in names if is_mission_file(name))]

@@ -53,6 +53,9 @@ _LIMIT_NAMES = {
     "too_much_energy": "what the battery gives above its reserve",
 }
 
+MOST_SECONDS, MOST_THREADS = 1e7, 1024
+"""Beyond these a limit of time or a number of threads is a slip of the fingers."""
+
 Objective = Literal["max", "total"]
 Decoding = Literal["greedy", "symmetries", "sampling"]
 """How the attention models choose: the likeliest at every step; the best of that for the farm turned and mirrored in
@@ -450,13 +453,17 @@ def drones_needed(problem: Problem, *, seed: int = 1) -> int:
 def _faults(options: Options, problem: Problem) -> list[Fault]:
     faults = []
     if not 0 <= options.seed < 2**64:
-        faults.append(Fault("seed", f"{options.seed} is not a whole number from 0 to 2^64 - 1", "choose another seed"))
-    if options.time_limit_s is not None and not options.time_limit_s > 0:
-        faults.append(Fault("time_limit_s", f"{options.time_limit_s} is not above 0", "give seconds, or leave it out"))
-    if options.threads < 1:
-        faults.append(Fault("threads", f"{options.threads} is below 1", "give at least one thread"))
-    if options.iterations is not None and options.iterations < 1:
-        faults.append(Fault("iterations", f"{options.iterations} is below 1", "give at least one, or leave it out"))
+        # Python refuses to print numbers of more than some thousand digits.
+        told = f"{options.seed}" if abs(options.seed) < 2**128 else "it"
+        faults.append(Fault("seed", f"{told} is not a whole number from 0 to 2^64 - 1", "choose another seed"))
+    if options.time_limit_s is not None and not 0 < options.time_limit_s <= MOST_SECONDS:
+        message = f"{options.time_limit_s} is not above 0 and at most {MOST_SECONDS:g}"
+        faults.append(Fault("time_limit_s", message, "give seconds, or leave it out"))
+    if not 1 <= options.threads <= MOST_THREADS:
+        faults.append(Fault("threads", f"it is not 1 to {MOST_THREADS}", "give the cores there are"))
+    if options.iterations is not None and not 1 <= options.iterations < 2**63:
+        message = "it is not a whole number from 1 to 2^63 - 1"
+        faults.append(Fault("iterations", message, "give fewer steps, or leave it out"))
     if not 0 <= options.slack_percent < math.inf:
         faults.append(Fault("slack_percent", f"{options.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
     for name, chosen, possible in (

@@ -1,13 +1,14 @@
 """The command line: ``pondhop COMMAND --help`` teaches each command.
 
 Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with ``--require-feasible``, breaks a rule),
-1 a bug, 130 stopped with Ctrl-C.
+1 a bug, 130 stopped with Ctrl-C, 143 asked to end.
 Results go to stdout, everything else to stderr. Heavy packages are imported where they are used, because
 ``pondhop plan`` should take no longer than planning does.
 """
 
 from __future__ import annotations
 
+import io
 import shlex
 import signal
 import sys
@@ -18,9 +19,13 @@ import typer
 from pondhop.cli.bench import bench
 from pondhop.cli.plan import generate_farm, plan
 from pondhop.cli.research import evaluate, generate, plot, solve
-from pondhop.cli.shared import EXIT_BUG, EXIT_INVALID_INPUT, print_faults
+from pondhop.cli.shared import EXIT_BUG, EXIT_INTERRUPTED, EXIT_INVALID_INPUT, print_faults
 from pondhop.cli.train import train_am
+from pondhop.documents.signals import StopSignals
 from pondhop.errors import Fault, InvalidInput
+
+_SIGNALLED = 128
+"""A program that a signal stopped ends with this and the signal's number: 130 for Ctrl-C, 143 for a request to end."""
 
 app = typer.Typer(
     name="pondhop",
@@ -37,16 +42,27 @@ def main() -> None:
     """Run the command line and answer what goes wrong in words a user can act on."""
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    # A terminal or a file that cannot show a letter gets a mark for it, not a bug.
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     arguments = sys.argv[1:]
+    stops = StopSignals()
     try:
-        app(arguments, prog_name="pondhop")
+        with stops.raised():
+            app(arguments, prog_name="pondhop")
+    except SystemExit as ended:
+        raise SystemExit(_SIGNALLED + stops.last if ended.code == EXIT_INTERRUPTED else ended.code) from None
     except InvalidInput as error:
         _print_invalid_input(error.faults, "--json" in arguments)
         sys.exit(EXIT_INVALID_INPUT)
     except OSError as error:
-        if error.filename is None:
-            _exit_with_bug(error, arguments)
-        fault = Fault(str(error.filename), error.strerror or str(error), "check the path, its permissions and the disk")
+        place = str(error.filename) if error.filename is not None else "the output"
+        fault = Fault(place, error.strerror or str(error), "check the path, its permissions and the space on the disk")
+        _print_invalid_input((fault,), "--json" in arguments)
+        sys.exit(EXIT_INVALID_INPUT)
+    except MemoryError:
+        fault = Fault("the input", "it needs more memory than there is", "plan fewer ponds or farms at once")
         _print_invalid_input((fault,), "--json" in arguments)
         sys.exit(EXIT_INVALID_INPUT)
     except Exception as error:  # noqa: BLE001 - the last resort: a user never sees a traceback unasked
@@ -66,7 +82,7 @@ def _pondhop(
     - `pondhop plan farm.geojson --drones 5 -o tonight`
 
     Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with `--require-feasible`, breaks a rule),
-    1 a bug, 130 stopped with Ctrl-C.
+    1 a bug, 130 stopped with Ctrl-C, 143 asked to end.
     """
     if version:
         from pondhop import __version__

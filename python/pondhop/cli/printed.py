@@ -125,20 +125,38 @@ def _battery_line(farm_plan: FarmPlan) -> str:
     return f"A battery gives {energy_text(usable_j)} above its reserve; the hungriest route takes {share:.0f} % of it."
 
 
-def print_solutions(solutions: Sequence[Solution]) -> None:
-    """Print the averages of the plans of research farms."""
-    table = _averages_table(
-        f"{len(solutions)} farms, planner {solutions[0].planner}",
-        [solution.plan.max_route_length for solution in solutions],
-        [solution.plan.total_length for solution in solutions],
-        [solution.gap_percent for solution in solutions],
-    )
-    table.add_row("seconds for all farms", f"{sum(solution.elapsed_s for solution in solutions):.4f}")
-    for reason in sorted({solution.reason for solution in solutions} - {""}):
-        table.add_row("chosen", reason)
-    num_infeasible = sum(not solution.plan.is_feasible for solution in solutions)
-    table.add_row("infeasible plans", str(num_infeasible), style="bold red" if num_infeasible else None)
-    Console(highlight=False).print(table)
+class SolvedFarms:
+    """What is told of the plans of many research farms, without keeping the plans."""
+
+    def __init__(self) -> None:
+        self._longest: list[float] = []
+        self._totals: list[float] = []
+        self._gaps: list[float | None] = []
+        self._reasons: set[str] = set()
+        self._planner = ""
+        self._elapsed_s = 0.0
+        self.num_infeasible = 0
+
+    def add(self, solution: Solution) -> None:
+        """Count the plan of a farm."""
+        self._longest.append(solution.plan.max_route_length)
+        self._totals.append(solution.plan.total_length)
+        self._gaps.append(solution.gap_percent)
+        self._reasons |= {solution.reason} - {""}
+        self._planner = solution.planner
+        self._elapsed_s += solution.elapsed_s
+        self.num_infeasible += not solution.plan.is_feasible
+
+    def print(self) -> None:
+        """Print the averages."""
+        title = f"{counted(len(self._longest), 'farm')}, planner {self._planner}"
+        table = _averages_table(title, self._longest, self._totals, self._gaps)
+        table.add_row("seconds for all farms", f"{self._elapsed_s:.4f}")
+        for reason in sorted(self._reasons):
+            table.add_row("chosen", reason)
+        style = "bold red" if self.num_infeasible else None
+        table.add_row("infeasible plans", str(self.num_infeasible), style=style)
+        Console(highlight=False, markup=False).print(table)
 
 
 def print_judgements(judgements: Sequence[Judgement]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, Unpack
 
@@ -26,7 +27,6 @@ from pondhop.planners import PlainOptions
 if TYPE_CHECKING:
     from pondhop.files.routes_json import Judgement
     from pondhop.instances import ResearchFarm
-    from pondhop.solution import Solution
 
 FarmsOption = Annotated[Path | None, typer.Option(help="The research farms that the plans are for.")]
 
@@ -62,39 +62,43 @@ def solve(
     Every pond is in exactly one route, and there are at most `--routes` of them.
     """
     from pondhop import planners
-    from pondhop.files.routes_json import read_routes, solutions_json
+    from pondhop.cli.printed import SolvedFarms
+    from pondhop.files.routes_json import PlansWriter, read_routes
 
     read = _research_farms(farms)
     starts = read_routes(start) if start is not None else None
     if starts is not None:
         _check_same_number(read, starts)
-    solutions: list[Solution] = []
+    writer = PlansWriter(output, None if output is not None and not as_json else partial(typer.echo, nl=False))
+    totals = SolvedFarms()
+    is_stopped = False
     with progress("Planning", total=len(read)) as advance:
-        for index, farm in enumerate(read):
-            problem = farm.to_problem(routes)
-            solution = planners.solve(
-                problem,
-                start=starts[index] if starts is not None else None,
-                progress=search_progress(advance),
-                **options,
-            )
-            solutions.append(solution)
-            advance()
-            if solution.is_interrupted:
-                break
-    text = solutions_json(solutions)
-    if output is not None:
-        _write_text(output, text)
-    if output is None or as_json:
-        typer.echo(text, nl=False)
-    else:
-        from pondhop.cli import printed
-
-        printed.print_solutions(solutions)
-    if solutions[-1].is_interrupted:
-        typer.echo(f"pondhop: stopped; {len(solutions)} of {len(read)} farms are planned", err=True)
+        try:
+            for index, farm in enumerate(read):
+                solution = planners.solve(
+                    farm.to_problem(routes),
+                    start=starts[index] if starts is not None else None,
+                    progress=search_progress(advance),
+                    **options,
+                )
+                writer.add(solution)
+                totals.add(solution)
+                advance()
+                if solution.is_interrupted:
+                    is_stopped = True
+                    break
+        except KeyboardInterrupt:
+            is_stopped = True
+        except BaseException:
+            writer.abandon()
+            raise
+    writer.finish()
+    if output is not None and not as_json and writer.num_plans:
+        totals.print()
+    if is_stopped:
+        typer.echo(f"pondhop: stopped; {writer.num_plans} of {len(read)} farms are planned", err=True)
         raise typer.Exit(EXIT_INTERRUPTED)
-    if require_feasible and not all(solution.plan.is_feasible for solution in solutions):
+    if require_feasible and totals.num_infeasible:
         raise typer.Exit(EXIT_INFEASIBLE)
 
 
@@ -232,8 +236,3 @@ def _check_same_number(farms: list[ResearchFarm], routes: list[list[list[int]]])
     if len(farms) != len(routes):
         message = f"{len(routes)} plans for {len(farms)} farms"
         raise InvalidInput([Fault("--farms", message, "give the farms that were solved, in the same order")])
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)

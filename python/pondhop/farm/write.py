@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from pondhop.documents.atomic import write_all
 from pondhop.farm.model import Farm, Pond
 from pondhop.places import Area, LonLat
 
@@ -34,7 +35,7 @@ def write_farm(path: str | Path, farm: Farm) -> None:
     features.extend(_polygon_json({"role": "fence"}, area) for area in farm.fences)
     lines = ",\n".join(json.dumps(feature, separators=(",", ":"), allow_nan=False) for feature in features)
     head = f'{{"type":"FeatureCollection","name":{json.dumps(farm.name)},"features":[\n'
-    Path(path).write_text(f"{head}{lines}\n]}}\n", encoding="utf-8")
+    write_all({Path(path): f"{head}{lines}\n]}}\n"})
 
 
 def _feature_json(properties: dict[str, object], pond: Pond) -> dict[str, object]:

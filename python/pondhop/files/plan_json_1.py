@@ -101,7 +101,6 @@ def farm_plan(content: Mapping[str, Any]) -> FarmPlan:
             }
             for index, route in enumerate(plan.routes)
         ],
-        "violations": [str(violation) for violation in plan.violations],
         "unserved": [{"pond": pond, "id": farm.ponds[pond].id} for pond in plan.unserved],
     }
     faults = list(differences("", content, expected))

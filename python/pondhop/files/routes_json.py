@@ -6,14 +6,18 @@ A list with one object a farm, in the order of the farms; docs/reference/cli.md 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from pondhop import _core
 from pondhop._core import Problem
+from pondhop.documents.atomic import check_is_file_or_absent
 from pondhop.errors import Fault, InvalidInput
 from pondhop.solution import Solution, gap_percent
+
+PARTIAL_SUFFIX = ".partial"
+"""Of the name of a file that is being written."""
 
 
 @dataclass(frozen=True)
@@ -79,10 +83,55 @@ def judge(index: int, problem: Problem, routes: Sequence[Sequence[int]]) -> Judg
     )
 
 
-def solutions_json(solutions: Sequence[Solution]) -> str:
-    """Return the JSON list, one farm a line."""
-    records = (_record(index, solution) for index, solution in enumerate(solutions))
-    return "[\n" + ",\n".join(map(json.dumps, records)) + "\n]\n"
+class PlansWriter:
+    """Writes the plans of research farms as they come: a JSON list with one object a line.
+
+    With a path, what is finished stands in ``NAME.partial`` at once, so that nothing but the farm under way is lost
+    whatever ends the program; it takes the place of the file in the end.
+
+    Parameters
+    ----------
+    path
+        The file; `None` where `stream` takes the text.
+    stream
+        Takes the text as well, piece by piece.
+    """
+
+    def __init__(self, path: Path | None, stream: Callable[[str], object] | None = None) -> None:
+        self._path, self._stream, self.num_plans = path, stream, 0
+        self._file = None
+        if path is not None:
+            check_is_file_or_absent(path)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._partial = path.with_name(path.name + PARTIAL_SUFFIX)
+            self._file = self._partial.open("w", encoding="utf-8", newline="")
+
+    def add(self, solution: Solution) -> None:
+        """Write the plan of the next farm."""
+        separator = ",\n" if self.num_plans else "[\n"
+        self._put(separator + json.dumps(_record(self.num_plans, solution)))
+        self.num_plans += 1
+
+    def finish(self) -> None:
+        """End the list, and put the file in its place."""
+        self._put("\n]\n" if self.num_plans else "[]\n")
+        if self._file is not None and self._path is not None:
+            self._file.close()
+            self._partial.replace(self._path)
+
+    def abandon(self) -> None:
+        """Give up: what is finished stays in ``NAME.partial``, if anything is."""
+        if self._file is not None:
+            self._file.close()
+            if not self.num_plans:
+                self._partial.unlink()
+
+    def _put(self, text: str) -> None:
+        if self._file is not None:
+            self._file.write(text)
+            self._file.flush()
+        if self._stream is not None:
+            self._stream(text)
 
 
 def read_routes(path: Path) -> list[list[list[int]]]:
@@ -91,7 +140,7 @@ def read_routes(path: Path) -> list[list[list[int]]]:
     Parameters
     ----------
     path
-        A file that `solutions_json` made, or any JSON list of objects with ``routes``.
+        A file that `PlansWriter` wrote, or any JSON list of objects with ``routes``.
 
     Returns
     -------
@@ -107,7 +156,7 @@ def read_routes(path: Path) -> list[list[list[int]]]:
     """
     try:
         document = json.loads(path.read_bytes())
-    except (UnicodeDecodeError, json.JSONDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise InvalidInput([Fault(str(path), f"this is not JSON: {error}", "give a file of 'pondhop solve'")]) from None
     if not isinstance(document, list):
         action = "give a file of 'pondhop solve'"

@@ -198,11 +198,13 @@ def setting_faults(settings: Mapping[str, object]) -> list[Fault]:
         least, most = NUMBERS[name].least, NUMBERS[name].most
         is_whole = name == "num_drones"
         kinds = (int,) if is_whole else (int, float)
-        if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value):
+        if isinstance(value, bool) or not isinstance(value, kinds):
             noun = "whole number" if is_whole else "number"
             faults.append(Fault(name, f"{value!r} is no {noun}", f"give a {noun} from {least:g} to {most:g}"))
         elif not least <= value <= most:
-            faults.append(Fault(name, f"{value!r} is out of range", f"give a value from {least:g} to {most:g}"))
+            # Python refuses to print numbers of more than some thousand digits.
+            told = repr(value) if abs(value) < 2**128 or isinstance(value, float) else "it"
+            faults.append(Fault(name, f"{told} is out of range", f"give a value from {least:g} to {most:g}"))
     return faults
 
 

@@ -4,7 +4,7 @@ Every function draws on the axes it is given or on a figure of its own, returns 
 `save_figure` writes them.
 """
 
-from pondhop.plot.canvas import draw_areas, prepared_axes, save_figure
+from pondhop.plot.canvas import draw_areas, figure_bytes, prepared_axes, save_figure
 from pondhop.plot.look import LOOKS, Look, Theme
 from pondhop.plot.plans import plot_clusters, plot_plan, plot_solution
 from pondhop.plot.routes import draw_depot
@@ -15,6 +15,7 @@ __all__ = [
     "Theme",
     "draw_areas",
     "draw_depot",
+    "figure_bytes",
     "plot_clusters",
     "plot_plan",
     "plot_solution",

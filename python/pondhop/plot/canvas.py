@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from pondhop.documents.atomic import write_all
 from pondhop.plot.fonts import lettering
 from pondhop.plot.look import Look
 from pondhop.units import METRES_PER_FOOT, METRES_PER_MILE, Units
@@ -41,16 +43,35 @@ def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
     OSError
         If the file cannot be written.
     """
+    path = Path(path)
+    write_all({path: figure_bytes(ax, path.suffix.lower().removeprefix("."))})
+
+
+def figure_bytes(ax: Axes, kind: str) -> bytes:
+    """Return the picture of some axes as the content of a file; the same figure gives the same bytes.
+
+    Parameters
+    ----------
+    ax
+        As a function of this package returned them.
+    kind
+        ``png`` or ``svg``.
+
+    Raises
+    ------
+    ValueError
+        If matplotlib knows no such format, or the axes belong to no figure.
+    """
     import matplotlib as mpl
 
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    metadata = {"Date": None} if path.suffix.lower() == ".svg" else None
     figure = ax.get_figure(root=True)
     if figure is None:
         raise ValueError("the axes belong to no figure")
+    metadata = {"Date": None} if kind == "svg" else None
+    content = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "pondhop"}):
-        figure.savefig(path, dpi=160, metadata=metadata, bbox_inches="tight", pad_inches=0.2)
+        figure.savefig(content, format=kind, dpi=160, metadata=metadata, bbox_inches="tight", pad_inches=0.2)
+    return content.getvalue()
 
 
 def prepared_axes(ax: Axes | None, extent: Points, look: Look) -> Axes:

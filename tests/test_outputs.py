@@ -1,0 +1,179 @@
+"""A plan's folder changes as a whole, whatever goes wrong on the way."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from hand_made import make_farm, make_plan, square, two_drones
+from pondhop import instances, outputs
+from pondhop.documents import atomic
+from pondhop.errors import InvalidInput
+from pondhop.fleet import Fleet
+from pondhop.solution import FarmPlan
+
+PONDHOP = str(Path(sys.executable).parent / "pondhop")
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def one_drone() -> FarmPlan:
+    return make_plan(make_farm(), Fleet(num_drones=1), [[0, 1, 2, 3, 4]])
+
+
+def unflyable() -> FarmPlan:
+    return make_plan(make_farm(no_fly=((square(-89.0015, 37.001, 0.0002),),)), Fleet(num_drones=1), [[0, 1, 2, 3, 4]])
+
+
+def test_a_plan_takes_the_place_of_an_earlier_one(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install matplotlib")
+    outputs.write_outputs(tmp_path / "fresh", one_drone(), has_figure=False)
+    outputs.write_outputs(tmp_path / "used", two_drones(), has_figure=True)
+    (tmp_path / "used" / "missions" / "notes.txt").write_text("the user's own")
+    (tmp_path / "used" / "photo.png").write_text("the user's own")
+    outputs.write_outputs(tmp_path / "used", one_drone(), has_figure=False)
+    used = contents(tmp_path / "used")
+    assert used.pop("photo.png") == used.pop("missions/notes.txt") == b"the user's own"
+    assert used == contents(tmp_path / "fresh")
+
+
+def test_nothing_is_left_of_missions_where_none_can_be_flown(tmp_path: Path) -> None:
+    outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
+    written = outputs.write_outputs(tmp_path, unflyable(), has_figure=False)
+    assert written.faults
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["plan.geojson", "plan.json"]
+
+
+class Breaks:
+    """Stands in for a function that works some times and then fails."""
+
+    def __init__(self, function: Callable[..., object], after: int, error: BaseException) -> None:
+        self._function, self._left, self._error = function, after, error
+
+    def __call__(self, *arguments: object) -> object:
+        if self._left == 0:
+            raise self._error
+        self._left -= 1
+        return self._function(*arguments)
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()], ids=["full", "ctrl-c"])
+@pytest.mark.parametrize("after", range(9))
+def test_a_failure_while_writing_leaves_the_old_plan(
+    after: int, error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "out"
+    outputs.write_outputs(folder, two_drones(), has_figure=False)
+    before = contents(folder)
+    monkeypatch.setattr(atomic, "_write", Breaks(atomic._write, after, error))
+    # A new plan of one drone has seven files.
+    if after < 7:
+        with pytest.raises(type(error)):
+            outputs.write_outputs(folder, one_drone(), has_figure=False)
+        assert contents(folder) == before
+    else:
+        outputs.write_outputs(folder, one_drone(), has_figure=False)
+        assert contents(folder) != before
+    assert not [path for path in folder.iterdir() if path.name.startswith(atomic.STAGING_PREFIX)]
+
+
+@pytest.mark.parametrize("after", range(18))
+def test_a_failure_while_swapping_leaves_the_old_plan(
+    after: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "out"
+    outputs.write_outputs(folder, two_drones(), has_figure=False)
+    before = contents(folder)
+    rename, left = Path.rename, [after]
+
+    def fail_once(self: Path, target: Path) -> Path:
+        left[0] -= 1
+        if left[0] == -1:
+            raise OSError(5, "Input/output error")
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "rename", fail_once)
+    # Eleven old files go out, seven new ones come in.
+    with pytest.raises(OSError, match="Input/output"):
+        outputs.write_outputs(folder, one_drone(), has_figure=False)
+    monkeypatch.undo()
+    assert contents(folder) == before
+
+
+def test_a_folder_in_the_way_is_told(tmp_path: Path) -> None:
+    (tmp_path / "plan.json").mkdir()
+    with pytest.raises(InvalidInput, match="this is a folder, not a file"):
+        outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
+    assert [path.name for path in tmp_path.iterdir()] == ["plan.json"]
+
+
+def started_solve(tmp_path: Path) -> tuple[subprocess.Popen[str], Path]:
+    """A command that plans farms one after the other, of which some are done."""
+    farms, plans = tmp_path / "farms.json", tmp_path / "plans.json"
+    instances.write_farms(farms, instances.generate(40, 500, seed=5))
+    command = [PONDHOP, "solve", farms, "--routes", 3, "--iterations", 30_000, "-o", plans]
+    process = subprocess.Popen(list(map(str, command)), stderr=subprocess.PIPE, text=True)
+    partial = tmp_path / "plans.json.partial"
+    while process.poll() is None and not (partial.exists() and partial.read_text().count("\n") > 3):
+        time.sleep(0.02)
+    return process, plans
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_plans_are_kept_when_the_program_is_stopped(number: int, code: int, tmp_path: Path) -> None:
+    process, plans = started_solve(tmp_path)
+    process.send_signal(number)
+    _, told = process.communicate()
+    assert process.returncode == code
+    found = json.loads(plans.read_text())
+    assert 3 <= len(found) < 500
+    assert f"stopped; {len(found)} of 500 farms are planned" in told
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+def test_plans_survive_a_kill(tmp_path: Path) -> None:
+    process, plans = started_solve(tmp_path)
+    process.kill()
+    process.communicate()
+    assert not plans.exists()
+    lines = (tmp_path / "plans.json.partial").read_text().splitlines()
+    assert [json.loads(line.rstrip(","))["index"] for line in lines[1:4]] == [0, 1, 2]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_stopped_search_is_a_plan_that_says_so(number: int, code: int, tmp_path: Path) -> None:
+    farm = Path(__file__).resolve().parents[1] / "examples" / "delta_farm.geojson"
+    command = [PONDHOP, "plan", farm, "--drones", 5, "--no-figure", "--time-limit", 600, "-o", tmp_path / "out"]
+    process = subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # The search has begun once the process has used a second of its own; until then a signal just ends it.
+    while process.poll() is None and processor_time_s(process.pid) < 3.0:
+        time.sleep(0.05)
+    process.send_signal(number)
+    _, told = process.communicate()
+    assert process.returncode == code, told
+    assert "best plan until then" in told
+    assert json.loads((tmp_path / "out" / "plan.json").read_text())["is_interrupted"] is True
+
+
+def processor_time_s(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / 100
+
+
+def test_the_same_plan_gives_the_same_folder(tmp_path: Path) -> None:
+    farm = Path(__file__).resolve().parents[1] / "examples" / "delta_farm.geojson"
+    for name in ("first", "second"):
+        command = [PONDHOP, "plan", farm, "--drones", 3, "--iterations", 3000, "-o", tmp_path / name]
+        subprocess.run(list(map(str, command)), check=True, capture_output=True)
+    assert contents(tmp_path / "first") == contents(tmp_path / "second")
