@@ -483,3 +483,31 @@ def test_the_command_writes_rows_table_plans_and_best(tmp_path: Path) -> None:
     again = bench(*command, "--best-known", best, "-o", out)
     assert again["num_new_runs"] == 0
     assert "that of best.json." in (out / "results.md").read_text()
+
+
+@pytest.mark.parametrize("name", ["=1+1", "+cmd", "-2", "@x", "'quoted", "\tx", 'a "b", c', "plain"])
+def test_no_name_becomes_a_formula_of_a_spreadsheet(tmp_path: Path, name: str) -> None:
+    results = Results(tmp_path)
+    run = replace(RUN, set_name=name, max_route_length=-1.5)
+    results.add(run, [[0]])
+    row = results.path.read_text(encoding="utf-8").splitlines()[1]
+    assert not row.startswith(("=", "+", "-", "@", "\t", '"=', '"\t'))
+    assert read_results(results.path) == [run]
+
+
+def test_a_cell_without_end_is_told(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    with results.path.open("a") as file:
+        file.write('"' + "x" * 200_000 + "\n")
+    with pytest.raises(InvalidInput, match="this is no table"):
+        read_results(results.path)
+
+
+@pytest.mark.parametrize("line", ["{", "[]", '{"key": 1}', '{"key": [[]], "routes": []}', "\xff", "9" * 5000])
+def test_damaged_plans_are_told_by_line(tmp_path: Path, line: str) -> None:
+    results = Results(tmp_path, is_keeping_plans=True)
+    results.add(RUN, [[0]])
+    with results.plans_path.open("a") as file:
+        file.write(line + "\n")
+    with pytest.raises(InvalidInput, match=r"plans\.jsonl, line 2"):
+        results.routes()

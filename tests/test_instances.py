@@ -181,3 +181,19 @@ def test_the_authors_farms_can_be_read() -> None:
 def test_the_published_instances_can_be_read(name: str, num_ponds: int) -> None:
     farm = instances.read_tsplib(SHARED / "mtsp" / f"{name}.tsp")
     assert farm.ponds.shape == (num_ponds, 2)
+
+
+@pytest.mark.parametrize(
+    ("weights", "words"),
+    [("ATT", "write EUC_2D to plan its places"), ("EXPLICIT", "a matrix of distances"), ("GEO", "on the globe")],
+)
+def test_other_distances_are_refused_by_name(tmp_path: Path, weights: str, words: str) -> None:
+    path = tmp_path / "other.tsp"
+    section = "EDGE_WEIGHT_SECTION\n0 1 2\n1 0 3\n2 3 0\n" if weights == "EXPLICIT" else "1 0 0\n2 1 0\n3 1 1\n"
+    header = HEADER.replace("EUC_2D", weights)
+    path.write_text((header.replace("NODE_COORD_SECTION\n", "") if weights == "EXPLICIT" else header) + section)
+    with pytest.raises(InvalidInput) as caught:
+        instances.read_tsplib(path)
+    (fault,) = caught.value.faults
+    assert fault.message == f"EDGE_WEIGHT_TYPE is {weights}"
+    assert words in fault.action

@@ -125,6 +125,9 @@ def read_farms(path: str | Path) -> list[ResearchFarm]:
         raise InvalidInput([Fault(place, f"this is not JSON: {error.msg}", "give a JSON list of farms")]) from error
     except RecursionError as error:
         raise InvalidInput([Fault(str(path), "brackets are nested too deep", "give a JSON list of farms")]) from error
+    except ValueError as error:
+        message = "it holds a number of thousands of digits"
+        raise InvalidInput([Fault(str(path), message, "give coordinates of at most 1e9")]) from error
     if not isinstance(farms, list) or not farms:
         message = "the list of farms is empty" if farms == [] else "this is not a list of farms"
         raise InvalidInput([Fault(str(path), message, 'give a JSON list of {"depot": [x, y], "ponds": [[x, y], ...]}')])
@@ -174,10 +177,15 @@ def read_tsplib(path: str | Path) -> ResearchFarm:
     Reinelt. TSPLIB 95, sections 1 and 2.
     """
     header, nodes, faults = _parse_tsplib(_read_text(Path(path)))
-    for key, expected in (("TYPE", "TSP"), ("EDGE_WEIGHT_TYPE", "EUC_2D")):
-        place, value = header.get(key, (str(path), "missing"))
-        if value != expected:
-            faults.append(Fault(place, f"{key} is {value}", f"give a file of {key}: {expected}"))
+    place, kind = header.get("TYPE", (str(path), "missing"))
+    if kind != "TSP":
+        faults.append(Fault(place, f"TYPE is {kind}", "give a file of TYPE: TSP"))
+    place, weights = header.get("EDGE_WEIGHT_TYPE", (str(path), "missing"))
+    if weights in _OTHER_WEIGHTS:
+        # What else is wrong with the file follows from it.
+        raise InvalidInput([Fault(place, f"EDGE_WEIGHT_TYPE is {weights}", _OTHER_WEIGHTS[weights])])
+    if weights != "EUC_2D":
+        faults.append(Fault(place, f"EDGE_WEIGHT_TYPE is {weights}", "give a file of EDGE_WEIGHT_TYPE: EUC_2D"))
     place, dimension = header.get("DIMENSION", (str(path), "missing"))
     if dimension != str(len(nodes)) and not faults:
         message = f"DIMENSION is {dimension}, but there are {len(nodes)} nodes"
@@ -253,6 +261,14 @@ def _shown(value: object) -> str:
     text = json.dumps(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
+
+_OTHER_WEIGHTS = {
+    "ATT": "its distances are those of the plane over the root of 10, rounded up: write EUC_2D to plan its places",
+    "CEIL_2D": "its distances are those of the plane, rounded up: write EUC_2D to plan its places",
+    "EXPLICIT": "it has a matrix of distances in place of places, which no planner here takes: give a file of places",
+    "GEO": "its places are degrees and minutes on the globe: give a file of planar places (EUC_2D)",
+}
+"""What to do about a TSPLIB file of another kind of distances."""
 
 _Header = dict[str, tuple[str, str]]
 

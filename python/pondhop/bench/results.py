@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import astuple, fields
 from pathlib import Path
 from typing import Any, get_type_hints
@@ -23,6 +23,9 @@ RESULTS_NAME = "results.csv"
 PLANS_NAME = "plans.jsonl"
 _TYPES: dict[str, Callable[[str], object]] = get_type_hints(Run)
 _COLUMNS = [column.name for column in fields(Run)]
+_FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "'")
+"""What makes a spreadsheet take a cell for a formula; a mark is marked, too, so that every text comes back."""
+
 _ACTION = "give a results.csv of 'pondhop bench', or another folder"
 
 
@@ -65,15 +68,24 @@ class Results:
         """Return the routes that were kept, by the key of their run."""
         if not self.plans_path.exists():
             return {}
-        with self.plans_path.open(encoding="utf-8") as lines:
-            plans = [json.loads(line) for line in lines]
-        return {tuple(plan["key"]): plan["routes"] for plan in plans}
+        faults, plans = [], {}
+        with self.plans_path.open(encoding="utf-8", errors="replace") as lines:
+            for number, line in enumerate(lines, start=1):
+                try:
+                    plan = json.loads(line)
+                    plans[tuple(plan["key"])] = plan["routes"]
+                except (ValueError, TypeError, KeyError, RecursionError):
+                    place = f"{self.plans_path}, line {number}"
+                    faults.append(Fault(place, "this is no plan of a run", "delete the line"))
+        if faults:
+            raise InvalidInput(faults)
+        return plans
 
     def add(self, run: Run, routes: list[list[int]]) -> None:
         """Append a run."""
         if self._is_keeping_plans:
             _append(self.plans_path, json.dumps({"key": run.key, "routes": routes}, separators=(",", ":")) + "\n")
-        _append(self.path, _csv_line(map(str, astuple(run))))
+        _append(self.path, _csv_line(map(_cell, astuple(run))))
         self.runs.append(run)
 
 
@@ -99,9 +111,11 @@ def read_results(path: Path) -> list[Run]:
         raise InvalidInput([Fault(f"{path}, line 1", "these are not the columns of a benchmark's results", _ACTION)])
     faults = []
     runs = {}
-    for row in rows:
+    for row in _rows(path, rows):
         try:
-            values: dict[str, Any] = {name: _TYPES[name](value) for name, value in zip(_COLUMNS, row, strict=True)}
+            values: dict[str, Any] = {
+                name: _TYPES[name](_value(cell)) for name, cell in zip(_COLUMNS, row, strict=True)
+            }
         except ValueError as error:
             faults.append(Fault(f"{path}, line {rows.line_num}", f"this is not a run: {error}", "delete the line"))
         else:
@@ -110,6 +124,25 @@ def read_results(path: Path) -> list[Run]:
     if faults:
         raise InvalidInput(faults)
     return list(runs.values())
+
+
+def _cell(value: object) -> str:
+    """A value as a spreadsheet must take it: text that looks like a formula is marked as text."""
+    text = str(value)
+    return f"'{text}" if isinstance(value, str) and text.startswith(_FORMULA_STARTS) else text
+
+
+def _value(cell: str) -> str:
+    """What `_cell` was given, as text."""
+    return cell[1:] if cell.startswith(tuple(f"'{start}" for start in _FORMULA_STARTS)) else cell
+
+
+def _rows(path: Path, rows: Iterator[list[str]]) -> Iterator[list[str]]:
+    """The rows of a table, of which a broken one may be as long as the file."""
+    try:
+        yield from rows
+    except csv.Error as error:
+        raise InvalidInput([Fault(str(path), f"this is no table: {error}", _ACTION)]) from error
 
 
 def _csv_line(values: Iterable[str]) -> str:
