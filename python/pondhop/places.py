@@ -24,3 +24,17 @@ def distance_m(a: LonLat, b: LonLat) -> float:
         math.sin((b_lat - a_lat) / 2) ** 2 + math.cos(a_lat) * math.cos(b_lat) * math.sin((b_lon - a_lon) / 2) ** 2
     )
     return 2.0 * EARTH_RADIUS_M * math.asin(math.sqrt(min(1.0, half_chord2)))
+
+
+def wrapped_longitude(longitude_deg: float) -> float:
+    """The same meridian within -180..180; a longitude that lies there already comes back to the last bit."""
+    if -180.0 <= longitude_deg <= 180.0:
+        return longitude_deg
+    return math.remainder(longitude_deg, 360.0)
+
+
+def unrolled_longitude(longitude_deg: float, near_deg: float) -> float:
+    """The same meridian within half a turn of another one, so that shapes across the 180th stay in one piece."""
+    if abs(longitude_deg - near_deg) <= 180.0:
+        return longitude_deg
+    return longitude_deg - 360.0 * round((longitude_deg - near_deg) / 360.0)

@@ -35,7 +35,9 @@ if TYPE_CHECKING:
 def plan(
     farm: Annotated[
         Path,
-        typer.Argument(exists=True, help="GeoJSON, KML, KMZ, Shapefile, GeoPackage, or CSV of positions or corners."),
+        typer.Argument(
+            exists=True, help="GeoJSON, KML, KMZ, GPX, Shapefile, GeoPackage, Excel, or CSV of positions or corners."
+        ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for plan, picture and missions.")],
     drones: Annotated[int | None, typer.Option(min=1, help="How many drones fly; all else is assumed.")] = None,
@@ -44,6 +46,16 @@ def plan(
     ] = None,
     depot: Annotated[
         str | None, typer.Option(metavar="LON,LAT", help="Where drones start and land, if the file does not say.")
+    ] = None,
+    layer: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Layer, sheet or folder of the file to read; several times for several."),
+    ] = None,
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ID[,ID...]", help="Ponds whose guessed place you have looked at and found right, or 'all'."
+        ),
     ] = None,
     sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
     figure: Annotated[
@@ -71,7 +83,12 @@ def plan(
     is_drawn = has_matplotlib() if figure is None else figure
     chosen_fleet = _fleet(drones, fleet, sampling)
     with progress("Planning", total=4 if is_drawn else 3) as advance:
-        read = read_farm(farm, depot=parse_lonlat("--depot", depot) if depot is not None else None)
+        read = read_farm(
+            farm,
+            depot=parse_lonlat("--depot", depot) if depot is not None else None,
+            layers=layer or (),
+            accept=",".join(accept or ()).split(","),
+        )
         advance()
         farm_plan = planners.plan(read, chosen_fleet, progress=search_progress(advance), **options)
         advance()

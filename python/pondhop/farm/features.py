@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import lru_cache
+from unicodedata import category
 
 from pondhop.errors import Fault
+from pondhop.farm.vocabulary import column_words
 from pondhop.places import LonLat
 
 Positions = list[LonLat]
 
+NAME_COLUMNS = column_words("names")
+"""Columns that hold what people call a feature."""
 
-@dataclass
+MAX_ALIKE = 4
+"""Notes of one kind that are told in full; of more, the first ones are told and the rest are counted."""
+
+
+@dataclass(slots=True)
 class Geometry:
     """Positions of one feature, sorted by what they draw; longitude before latitude.
 
@@ -38,7 +46,7 @@ class Geometry:
         return [*self.points, *(position for part in (*self.lines, *rings) for position in part)]
 
 
-@dataclass
+@dataclass(slots=True)
 class Feature:
     """One feature of a file.
 
@@ -54,8 +62,12 @@ class Feature:
         Its positions in WGS84; empty where the file gives none.
     own_id
         What the format calls the feature, for want of a property: the ``id`` of a GeoJSON feature.
-    layer
-        The layer, folder or sheet it stands in, if the format has them.
+    folders
+        The layer, sheet or folders it stands in, the outermost first, if the format has them.
+    style
+        What the format calls the way it is drawn, which people name too: the style of a placemark.
+    doubts
+        What was guessed about its position while reading, a sentence each; only its owner can tell whether it is right.
     """
 
     place: str
@@ -63,22 +75,55 @@ class Feature:
     properties: Mapping[str, object]
     geometry: Geometry
     own_id: str | None = None
-    layer: str | None = None
-
-    @cached_property
-    def _keys(self) -> dict[str, str]:
-        return {normal_name(key): key for key in self.properties}
+    folders: tuple[str, ...] = ()
+    style: str = ""
+    doubts: list[str] = field(default_factory=list)
 
     def find(self, *names: str) -> tuple[str, object] | None:
         """The first property that is there under one of the names, as the file spells it, and its value.
 
         Spelling is forgiving: ``Pond ID`` is ``pond_id``. Blank values count as absent.
         """
+        spellings = _spellings(tuple(self.properties))
         for name in names:
-            key = self._keys.get(normal_name(name))
+            key = spellings.get(normal_name(name))
             if key is not None and not is_blank(self.properties[key]):
                 return key, self.properties[key]
         return None
+
+    @property
+    def name(self) -> str:
+        """What people call it, for messages; empty if they do not."""
+        found = self.find(*NAME_COLUMNS)
+        return clean_text(text_of(found[1])) if found else ""
+
+    def told(self) -> str:
+        """Its name and its place, for messages."""
+        return f"{shortened(self.name)!r} ({self.place})" if self.name else self.place
+
+
+class Notes:
+    """What the reader assumed or changed, a sentence each; what repeats itself is counted."""
+
+    def __init__(self) -> None:
+        self._kinds: dict[str, list[str]] = {}
+
+    def add(self, sentence: str, kind: str | None = None) -> None:
+        """Tell a sentence once; those of one `kind` are counted where they are many."""
+        told = self._kinds.setdefault(kind or sentence, [])
+        if sentence not in told[-1:]:
+            told.append(sentence)
+
+    def sentences(self) -> tuple[str, ...]:
+        """All of them, in the order of their kinds."""
+        lines: list[str] = []
+        for told in self._kinds.values():
+            if len(told) <= MAX_ALIKE:
+                lines.extend(told)
+            else:
+                shown = told[: MAX_ALIKE - 1]
+                lines.extend([*shown, f"The same {len(told) - len(shown)} times more."])
+        return tuple(map(clean_text, lines))
 
 
 @dataclass
@@ -95,12 +140,24 @@ class Source:
         What is wrong with the file as such; features they concern may be missing above.
     notes
         What the reader assumed or changed, a sentence each.
+    layers
+        The names of all layers, sheets or folders, also of those that were not asked for.
     """
 
     name: str
     features: list[Feature] = field(default_factory=list)
     faults: list[Fault] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    notes: Notes = field(default_factory=Notes)
+    layers: list[str] = field(default_factory=list)
+
+
+@lru_cache(maxsize=4096)
+def _spellings(keys: tuple[str, ...]) -> dict[str, str]:
+    """The columns of a feature by their plain spelling; the first of two that are spelled alike.
+
+    ``@id`` and its like are no columns of people, but of OpenStreetMap.
+    """
+    return {normal_name(key): key for key in reversed(keys) if not key.startswith("@")}
 
 
 @lru_cache(maxsize=4096)
@@ -116,9 +173,37 @@ def is_blank(value: object) -> bool:
 
 def text_of(value: object) -> str:
     """An identifier as text: whole numbers lose the decimal point that a spreadsheet or GIS gave them."""
-    if isinstance(value, float) and value.is_integer():
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return str(int(value))
     return str(value).strip()
+
+
+@lru_cache(maxsize=4096)
+def clean_text(text: str) -> str:
+    """A text that can be printed and written anywhere: one line, without half characters and control characters."""
+    if text.isascii() and text.isprintable():
+        return text.strip()
+    plain = " ".join(text.split())
+    return "".join(
+        _REPLACEMENT if category(letter) in {"Cc", "Cs"} or letter in _TURNING else letter for letter in plain
+    )
+
+
+_REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
+_TURNING = "\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
+"""Characters that turn the direction of what follows, which would garble the rest of a line."""
+
+
+def shortened(text: str, max_letters: int = 40) -> str:
+    """A text for a message, cut where it is long."""
+    return text if len(text) <= max_letters else f"{text[: max_letters - 3]}..."
+
+
+def listed(names: Iterable[str], max_names: int = 5) -> str:
+    """Names for a message, the first ones where they are many."""
+    told = list(names)
+    more = f" and {len(told) - max_names} more" if len(told) > max_names else ""
+    return ", ".join(told[:max_names]) + more
 
 
 def number_of(value: object) -> float | None:

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from pondhop._core import LocalFrame
 from pondhop.errors import Fault, InvalidInput
-from pondhop.farm.checks import MAX_LATITUDE_DEG, point_inside
+from pondhop.farm.coordinates import MAX_LATITUDE_DEG
 from pondhop.farm.model import Farm, Pond
+from pondhop.farm.shapes import point_inside
 from pondhop.places import LonLat
 
 MAX_PONDS = 5_000

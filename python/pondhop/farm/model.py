@@ -34,6 +34,22 @@ class Pond:
 
 
 @dataclass(frozen=True)
+class Doubt:
+    """A pond whose place was guessed while reading: its owner must look at it before anything flies there.
+
+    Attributes
+    ----------
+    pond_id
+        Of the pond; the name by which the doubt is accepted.
+    message
+        What was guessed, with the place in the file.
+    """
+
+    pond_id: str
+    message: str
+
+
+@dataclass(frozen=True)
 class Farm:
     """A farm as read from a file; see `pondhop.read_farm`.
 
@@ -49,6 +65,9 @@ class Farm:
         Other features of the file.
     notes
         What the reader assumed or changed, a sentence each.
+    doubts
+        Ponds whose place is a guess. While there are any, no mission may be written; see `read_farm`'s ``accept`` and
+        `pondhop.farm.doubt_fault`.
     """
 
     name: str
@@ -58,6 +77,7 @@ class Farm:
     no_fly: tuple[Area, ...] = ()
     fences: tuple[Area, ...] = ()
     notes: tuple[str, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
     def to_problem(self, fleet: Fleet) -> Problem:
         """The planning task in metres, in the local frame whose origin is the depot.

@@ -1,7 +1,7 @@
-"""Farm tables: a pond a line, as longitude and latitude, as four corners, or as an outline in WKT.
+"""Farm tables: a pond a line, as longitude and latitude, as four corners, or as an outline in WKT; or a corner a line.
 
 Real tables hold typing errors; those that can be told from the other numbers of the same line are worked around with a
-note that names line and column (`_pond_from_corners`), all others are faults.
+note that names line and column (`corners`), all others are faults.
 """
 
 from __future__ import annotations
@@ -10,45 +10,40 @@ import csv
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 from pondhop.errors import Fault
-from pondhop.farm.features import Feature, Geometry, Source, is_blank, normal_name, number_of
+from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns
+from pondhop.farm.corners import pond_from_corners
+from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees
+from pondhop.farm.features import Feature, Geometry, Source, is_blank, listed, normal_name, shortened
+from pondhop.farm.projections import reproject, utm_crs
+from pondhop.farm.roles import POND_COLUMNS
 from pondhop.places import LonLat
 
-Axis = Literal["lon", "lat"]
-_AXES: tuple[Axis, Axis] = ("lon", "lat")
+MAX_CELL_CHARACTERS = 10_000_000
+"""Python's own limit of 131,072 is less than an outline in WKT may have."""
 
-_LON = r"(?:gps)?(?:longitude|long|lon|lng|x)"
-_LAT = r"(?:gps)?(?:latitude|lat|y)"
-_UNIT = r"(?:deg|degrees|degree|dd|wgs84|decimal|epsg4326)?"
-_CORNERS = {
-    **dict.fromkeys(("ul", "tl", "nw", "upperleft", "topleft", "northwest"), 0),
-    **dict.fromkeys(("ll", "bl", "sw", "lowerleft", "bottomleft", "southwest"), 1),
-    **dict.fromkeys(("lr", "br", "se", "lowerright", "bottomright", "southeast"), 2),
-    **dict.fromkeys(("ur", "tr", "ne", "upperright", "topright", "northeast"), 3),
-    **{str(number): number - 1 for number in (1, 2, 3, 4)},
-}
-"""Position of a corner in a ring that runs upper left, lower left, lower right, upper right; or as numbered."""
+MAX_TITLE_LINES = 10
+"""How far below the top of a sheet the headings may stand."""
 
-OUTLIER_RATIO = 3.0
-"""A corner further from its nearest sibling than this times the extent of the other three is mistyped.
+MIN_CORNERS = 3
 
-In a rectangle of any shape the ratio is below 1; above 3 the pond would be a needle.
-"""
+_CORNER_ORDER = (
+    "order",
+    "vertex",
+    "corner",
+    "corner_no",
+    "point",
+    "point_no",
+    "seq",
+    "sequence",
+    "vertice",
+    "esquina",
+    "orden",
+)
 
-HEADER_ACTION = "name the columns in the first line, as in: pond,lon,lat"
-
-
-@dataclass(frozen=True)
-class _Columns:
-    """Which column holds what: ``corners`` has column indices of longitude and latitude, four times or for a point."""
-
-    names: tuple[str, ...]
-    corners: tuple[tuple[int, int], ...]
-    wkt: int | None
-    is_compass: bool
+Row = tuple[int, list[str]]
+"""The number of a line and its cells."""
 
 
 def read_table(text: str, source: Source) -> None:
@@ -57,137 +52,204 @@ def read_table(text: str, source: Source) -> None:
     Parameters
     ----------
     text
-        Comma, semicolon, tab or bar between the columns; with any but the comma, decimal commas are understood. The
-        first line names the columns.
+        Comma, semicolon, tab or bar between the columns, or what a first line ``sep=`` says. The first line with
+        headings names the columns.
     source
         Where features, faults and notes go.
     """
     lines = text.splitlines()
+    first = next((index for index, line in enumerate(lines) if line.strip()), 0)
+    separator = re.fullmatch(r"\s*\"?sep=(.|\\t)\"?\s*", lines[first], re.IGNORECASE) if lines else None
+    if separator:
+        lines[first] = ""
     header_line = next((line for line in lines if line.strip()), "")
-    delimiter = max(",;\t|", key=header_line.count)
+    delimiter = separator[1].replace("\\t", "\t") if separator else max(",;\t|", key=header_line.count)
+    previous_limit = csv.field_size_limit(MAX_CELL_CHARACTERS)
     try:
         # Strict, because an unclosed quote would otherwise swallow the rest of the file as one cell.
         reader = csv.reader(lines, delimiter=delimiter, skipinitialspace=True, strict=True)
         rows = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        source.faults.append(Fault("file", f"this is no table: {error}", "export the table again as CSV"))
-        return
+        if '"' not in header_line and _has_inch_marks(lines):
+            # Seconds of an angle are written with the very sign that quotes text.
+            rows = [(number, line.split(delimiter)) for number, line in enumerate(lines, start=1) if line.strip()]
+        else:
+            source.faults.append(Fault("file", f"this is no table: {error}", "export the table again as CSV"))
+            return
+    finally:
+        csv.field_size_limit(previous_limit)
     if not rows:
         source.faults.append(Fault("file", "the table is empty", HEADER_ACTION))
         return
-    columns = _find_columns(rows[0][1], source)
+    read_rows(rows, "line", source)
+
+
+def _has_inch_marks(lines: Sequence[str]) -> bool:
+    return any(re.search(r"\d[°º].*\d\"", line) for line in lines)
+
+
+def read_sheet_rows(sheets: dict[str, list[list[str]]], source: Source) -> None:
+    """Read the sheets of a workbook; those without coordinates are left out where another one has some."""
+    source.layers.extend(sheets)
+    readable: dict[str, Source] = {}
+    failed: dict[str, Source] = {}
+    for name, sheet in sheets.items():
+        rows = [(number, row) for number, row in enumerate(sheet, start=1) if any(cell.strip() for cell in row)]
+        if not rows:
+            continue
+        inner = Source(name=source.name)
+        read_rows(rows, "row" if len(sheets) == 1 else f"sheet {name!r}, row", inner)
+        for feature in inner.features:
+            feature.folders = (name,) if len(sheets) > 1 else ()
+        has_columns = inner.features or not any("columns" in fault.message for fault in inner.faults)
+        (readable if has_columns else failed)[name] = inner
+    if readable and failed:
+        source.notes.add(f"Left out, because they have no coordinates: sheets {listed(map(repr, failed))}.")
+    for inner in (readable or failed).values():
+        source.features.extend(inner.features)
+        source.faults.extend(inner.faults)
+        for sentence in inner.notes.sentences():
+            source.notes.add(sentence)
+    if not readable and not failed and not source.faults:
+        source.faults.append(Fault("file", "the table is empty", HEADER_ACTION))
+
+
+def read_rows(rows: Sequence[Row], word: str, source: Source) -> None:
+    """Read the lines of a table, headings first, into features.
+
+    Parameters
+    ----------
+    rows
+        The lines that are not blank.
+    word
+        What a line is called in messages: ``line``, ``row``.
+    source
+        Where features, faults and notes go.
+    """
+    header, columns = _header(rows, word, source)
     if columns is None:
         return
-    if len(rows) == 1:
+    below = rows[header + 1 :]
+    if not below:
         source.faults.append(Fault("file", "the table has no line but the first", "add a line for each pond"))
-    for line, row in rows[1:]:
-        _read_row(line, row, delimiter != ",", columns, source)
-
-
-def _axis(name: str) -> tuple[Axis, str] | None:
-    """Which coordinate a column holds, and of which corner: ``lat_ul`` and ``UL Latitude`` are both (lat, ul)."""
-    plain = normal_name(name)
-    for axis, pattern in zip(_AXES, (_LON, _LAT), strict=True):
-        corner = "|".join(sorted(_CORNERS, key=len, reverse=True))
-        for form in (
-            rf"{pattern}{_UNIT}(?P<corner>{corner})?{_UNIT}",
-            rf"(?:corner)?(?P<corner>{corner}){pattern}{_UNIT}",
-        ):
-            match = re.fullmatch(form, plain)
-            if match:
-                return axis, match["corner"] or ""
-    return None
-
-
-def _find_columns(header: Sequence[str], source: Source) -> _Columns | None:
-    names = tuple(name.strip() for name in header)
-    wkt = next((i for i, name in enumerate(names) if normal_name(name) in {"wkt", "geometry", "geom", "thegeom"}), None)
-    found: dict[tuple[Axis, str], int] = {}
-    for index, name in enumerate(names):
-        key = _axis(name)
-        if key is None:
+        return
+    features: list[Feature] = []
+    zones: dict[str, list[Feature]] = {}
+    for number, row in below:
+        feature = _read_row(f"{word} {number}", row, columns, source)
+        if feature is None:
             continue
-        if key in found:
-            message = f"columns {names[found[key]]!r} and {name!r} both hold a {key[0]}"
-            source.faults.append(Fault("line 1", message, "keep one of them"))
-            return None
-        found[key] = index
-    if wkt is None and not found:
-        shown = ", ".join(names)[:80]
-        seen = "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {shown}"
-        message = f"no longitude and latitude columns; the first line has {seen}"
-        source.faults.append(Fault("line 1", message, HEADER_ACTION))
-        return None
-    if not found:
-        return _Columns(names, (), wkt, is_compass=False)
-    labels = sorted({corner for _, corner in found if corner})
-    by_corner = {_CORNERS[label]: label for label in labels}
-    is_compass = not any(label.isdecimal() for label in labels)
-    expected = [
-        by_corner.get(corner, ("ul", "ll", "lr", "ur")[corner] if is_compass else str(corner + 1))
-        for corner in range(4)
-    ]
-    missing = [f"{axis} of corner {label}" for label in expected for axis in _AXES if (axis, label) not in found]
-    if not missing:
-        corners = tuple((found["lon", label], found["lat", label]) for label in expected)
-        return _Columns(names, corners, None, is_compass)
-    if not labels or any((axis, "") in found for axis in _AXES):
-        missing = [axis for axis in _AXES if (axis, "") not in found]
-        if not missing:
-            return _Columns(names, ((found["lon", ""], found["lat", ""]),), None, is_compass=False)
-    source.faults.append(Fault("line 1", f"no column for {', '.join(missing)}", HEADER_ACTION))
-    return None
+        features.append(feature)
+        if columns.zone is not None:
+            zone = utm_crs(row[columns.zone]) if columns.zone < len(row) else None
+            if zone is None:
+                place = feature.property_place.format(columns.names[columns.zone])
+                message = (
+                    f"{shortened(row[columns.zone].strip() if columns.zone < len(row) else '')!r} is no zone of UTM"
+                )
+                source.faults.append(Fault(place, message, "write number and hemisphere, as in 48N or 17S"))
+            else:
+                zones.setdefault(zone, []).append(feature)
+    for zone, members in zones.items():
+        reproject(zone, f"column {columns.names[columns.zone or 0]}", members, source)
+    source.features.extend(_joined_corners(features, columns, source))
 
 
-def _read_row(line: int, row: Sequence[str], has_decimal_comma: bool, columns: _Columns, source: Source) -> None:
-    place = f"line {line}"
+def _header(rows: Sequence[Row], word: str, source: Source) -> tuple[int, Columns | None]:
+    """The headings: the first line, or the first below a title that names coordinates."""
+    faults: list[Fault] = []
+    for index, (number, row) in enumerate(rows[: MAX_TITLE_LINES + 1]):
+        tried = Source(source.name)
+        columns = find_columns(row, [cells for _, cells in rows[index + 1 : index + 200]], f"{word} {number}", tried)
+        if columns is not None:
+            if index:
+                source.notes.add(f"The headings were found in {word} {number}; the lines above it were left out.")
+            return index, columns
+        faults = faults or tried.faults
+    source.faults.extend(faults)
+    return 0, None
+
+
+def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) -> Feature | None:
     names = columns.names
     if len(row) > len(names) and any(cell.strip() for cell in row[len(names) :]):
         message = f"{len(row)} values for {len(names)} columns"
         action = "put text with commas in quotes, and write decimals with a point or separate columns with semicolons"
         source.faults.append(Fault(place, message, action))
-        return
-    cells = dict(zip(names, (*row, *[""] * (len(names) - len(row))), strict=False))
+        return None
+    cells = (*row, *[""] * (len(names) - len(row)))
     geometry = Geometry()
+    doubts: list[str] = []
     num_faults = len(source.faults)
     if columns.wkt is not None:
-        _read_wkt(f"{place}, column {names[columns.wkt]}", cells[names[columns.wkt]], geometry, source)
+        _read_wkt(f"{place}, column {names[columns.wkt]}", cells[columns.wkt], geometry, source)
     else:
-        numbers = {
-            index: _number(f"{place}, column {names[index]}", cells[names[index]], has_decimal_comma, source)
-            for pair in columns.corners
-            for index in pair
-        }
         positions = [
-            (lon, lat)
-            for lon, lat in ((numbers[lon_column], numbers[lat_column]) for lon_column, lat_column in columns.corners)
-            if lon is not None and lat is not None
+            position for pair in columns.corners if (position := _position(place, cells, pair, columns, source))
         ]
         if len(positions) == 1 == len(columns.corners):
             geometry.points.append(positions[0])
         elif len(positions) == 4:
-            geometry.polygons.append([_pond_from_corners(place, positions, columns, source)])
+            geometry.polygons.append([pond_from_corners(place, positions, columns, doubts, source)])
     if len(source.faults) > num_faults:
-        return
-    used = {index for pair in columns.corners for index in pair} | {columns.wkt}
-    properties = {name: cells[name] for index, name in enumerate(names) if index not in used}
-    source.features.append(Feature(place, f"{place}, column {{}}", properties, geometry))
+        return None
+    used = columns.used()
+    properties = {name: cells[index] for index, name in enumerate(names) if index not in used}
+    return Feature(place, f"{place}, column {{}}", properties, geometry, doubts=doubts)
 
 
-def _number(place: str, cell: str, has_decimal_comma: bool, source: Source) -> float | None:
+def _position(
+    place: str, cells: Sequence[str], pair: tuple[int, int], columns: Columns, source: Source
+) -> LonLat | None:
+    numbers = [_number(place, cells, index, axis, columns, source) for index, axis in zip(pair, AXES, strict=True)]
+    return None if numbers[0] is None or numbers[1] is None else (numbers[0], numbers[1])
+
+
+def _number(
+    row_place: str, cells: Sequence[str], index: int, axis: Axis, columns: Columns, source: Source
+) -> float | None:
+    cell, place = cells[index], f"{row_place}, column {columns.names[index]}"
     if is_blank(cell):
         source.faults.append(Fault(place, "the cell is empty", "fill in decimal degrees, or delete the line"))
         return None
-    number = number_of(cell.replace(",", ".") if has_decimal_comma else cell)
+    number = metres(cell) if columns.zone is not None else parse_degrees(cell, axis)
     if number is None:
-        source.faults.append(Fault(place, f"{cell.strip()[:40]!r} is no number", "write decimal degrees, as in -89.17"))
+        action = "write metres, as in 576800" if columns.zone is not None else "write decimal degrees, as in -89.17"
+        source.faults.append(Fault(place, f"{shortened(cell.strip())!r} is no number", action))
+        return None
+    sign, told = columns.signs.get(axis, 1), "its heading"
+    if axis in columns.sides:
+        letter = cells[columns.sides[axis]]
+        side = hemisphere(letter)
+        told = f"column {columns.names[columns.sides[axis]]}"
+        if side is None and not is_blank(letter):
+            source.faults.append(
+                Fault(place, f"{shortened(letter)!r} in {told} is no hemisphere", "write N, S, E or W")
+            )
+            return None
+        sign = side[1] if side is not None else 1
+        if number < 0.0 < sign and side is not None:
+            message = f"{cell.strip()} is negative, but {told} says {letter.strip()}"
+            source.faults.append(Fault(place, message, "correct the sign, or the letter"))
+            return None
+    if sign < 0 < number:
+        axis_name = "Longitudes" if axis == "lon" else "Latitudes"
+        source.notes.add(f"{axis_name} were taken as negative where {told} says so (west and south).")
+        return -number
     return number
 
 
 def _read_wkt(place: str, cell: str, geometry: Geometry, source: Source) -> None:
     import shapely
 
-    shape = shapely.from_wkt(cell, on_invalid="ignore") if cell.strip() else None
+    try:
+        shape = shapely.from_wkt(cell, on_invalid="ignore") if cell.strip() else None
+    except NotImplementedError:
+        message = f"{shortened(cell.strip())!r} has curves"
+        source.faults.append(
+            Fault(place, message, "turn the curves into straight lines (in QGIS: Convert curved geometry)")
+        )
+        return
     parts = [] if shape is None else list(shapely.get_parts(shape))
     for part in parts:
         lonlats = [(float(x), float(y)) for x, y in shapely.get_coordinates(part)]
@@ -202,60 +264,49 @@ def _read_wkt(place: str, cell: str, geometry: Geometry, source: Source) -> None
             geometry.lines.append(lonlats)
     if not parts:
         source.faults.append(
-            Fault(place, f"{cell.strip()[:40]!r} is no WKT", "write POLYGON ((lon lat, lon lat, ...))")
+            Fault(place, f"{shortened(cell.strip())!r} is no WKT", "write POLYGON ((lon lat, lon lat, ...))")
         )
 
 
-def _pond_from_corners(place: str, corners: list[LonLat], columns: _Columns, source: Source) -> list[LonLat]:
-    """The outline of a pond whose four corners were typed by hand.
+def _joined_corners(features: list[Feature], columns: Columns, source: Source) -> list[Feature]:
+    """The features, those joined to one outline that are points with one id: tables with a corner a line.
 
-    A corner that lies off by more than `OUTLIER_RATIO` is replaced by the one that completes the other three to a
-    parallelogram, which ponds nearly are, so that the centre of the pond stays right. Corners that do not lie around
-    the pond in the order of their names are joined in the order that they do, by angle around their mean. Both leave a
-    note.
+    Only where every id that is there several times is there at least three times: two lines are a typing error.
     """
-    ring = list(corners)
-    wrong = _outlier(ring)
-    if wrong is not None:
-        before, opposite, after = ring[wrong - 1], ring[wrong - 2], ring[wrong - 3]
-        typed, ring[wrong] = (
-            ring[wrong],
-            (
-                before[0] + after[0] - opposite[0],
-                before[1] + after[1] - opposite[1],
-            ),
-        )
-        off = [
-            f"column {columns.names[columns.corners[wrong][axis]]} has {typed[axis]:.6f}, "
-            f"expected about {ring[wrong][axis]:.6f}"
-            for axis in (0, 1)
-            if abs(typed[axis] - ring[wrong][axis]) > OUTLIER_RATIO * _extent([before, opposite, after])
-        ]
-        source.notes.append(
-            f"{place}: one corner lies far from the other three and was placed from them ({'; '.join(off)})."
-        )
-    centre = (sum(lon for lon, _ in ring) / 4, sum(lat for _, lat in ring) / 4)
-    around = sorted(range(4), key=lambda c: math.atan2(ring[c][1] - centre[1], ring[c][0] - centre[0]))
-    start = around.index(0)
-    order = around[start:] + around[:start]
-    if order not in ([0, 1, 2, 3], [0, 3, 2, 1]):
-        names = ", ".join(columns.names[lat] for _, lat in columns.corners)
-        because = f"columns {names} contradict each other; one is mistyped" if columns.is_compass else "check them"
-        source.notes.append(
-            f"{place}: the corners are not in order around the pond and were joined by angle ({because})."
-        )
-    return [ring[c] for c in order]
+    id_column = next((name for name in columns.names if normal_name(name) in POND_COLUMNS), None)
+    if len(columns.corners) != 1 or id_column is None:
+        return features
+    groups: dict[str, list[Feature]] = {}
+    for number, feature in enumerate(features):
+        value = feature.properties.get(id_column)
+        key = f"\0{number}" if is_blank(value) or feature.find("role") else str(value).strip()
+        groups.setdefault(key, []).append(feature)
+    repeated = [members for members in groups.values() if len(members) > 1]
+    if not repeated or min(map(len, repeated)) < MIN_CORNERS or _is_one_name(groups):
+        return features
+    joined: list[Feature] = []
+    for members in groups.values():
+        if len(members) == 1:
+            joined.extend(members)
+            continue
+        if all(member.find(*_CORNER_ORDER) for member in members):
+            members = sorted(members, key=_corner_number)
+        first = members[0]
+        ring = [member.geometry.points[0] for member in members]
+        joined.append(Feature(first.place, first.property_place, first.properties, Geometry(polygons=[[ring]])))
+    num_lines = sum(map(len, repeated))
+    source.notes.add(
+        f"{num_lines} lines were joined to {len(repeated)} outlines, a corner a line, by column {id_column!r}."
+    )
+    return joined
 
 
-def _extent(points: Sequence[LonLat]) -> float:
-    """Largest distance of any two points, in degrees."""
-    return max(math.dist(a, b) for a in points for b in points)
+def _is_one_name(groups: dict[str, list[Feature]]) -> bool:
+    """Whether all lines have one and the same name, which names nothing."""
+    return len(groups) == 1 and len(next(iter(groups.values()))) > 50
 
 
-def _outlier(corners: Sequence[LonLat]) -> int | None:
-    """Index of the corner that lies far from the other three, if one does."""
-    for index, corner in enumerate(corners):
-        siblings = [sibling for other, sibling in enumerate(corners) if other != index]
-        if min(math.dist(corner, sibling) for sibling in siblings) > OUTLIER_RATIO * _extent(siblings):
-            return index
-    return None
+def _corner_number(feature: Feature) -> float:
+    found = feature.find(*_CORNER_ORDER)
+    number = parse_degrees(str(found[1]), "lon") if found else None
+    return math.inf if number is None else number

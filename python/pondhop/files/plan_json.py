@@ -19,7 +19,7 @@ from pondhop._core import Separation, __version__, evaluate, lower_bound, separa
 from pondhop.documents.atomic import write_all
 from pondhop.documents.schemas import check_schema, read_json
 from pondhop.errors import InvalidInput
-from pondhop.farm.model import Farm, Pond
+from pondhop.farm.model import Doubt, Farm, Pond
 from pondhop.files import plan_json_1
 from pondhop.files.compared import differences, unknown_ponds
 from pondhop.fleet import Fleet
@@ -212,6 +212,7 @@ def farm_object(farm: Farm) -> dict[str, Any]:
         "no_fly": [_rings_object(area) for area in farm.no_fly],
         "fences": [_rings_object(area) for area in farm.fences],
         "notes": list(farm.notes),
+        "doubts": [{"pond_id": doubt.pond_id, "message": doubt.message} for doubt in farm.doubts],
     }
 
 
@@ -318,6 +319,7 @@ def read_farm_object(content: Mapping[str, Any]) -> Farm:
         no_fly=tuple(map(_rings, content["no_fly"])),
         fences=tuple(map(_rings, content["fences"])),
         notes=tuple(content["notes"]),
+        doubts=tuple(Doubt(doubt["pond_id"], doubt["message"]) for doubt in content["doubts"]),
     )
 
 

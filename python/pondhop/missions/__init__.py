@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
+from pondhop.farm import Farm, doubt_fault
 from pondhop.missions.autopilots import ARDUPILOT
 from pondhop.missions.check import broken_rules
 from pondhop.missions.formats import FORMATS
@@ -109,11 +110,12 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
     farm_plan
         Its own ``obstacles`` are passed over.
     """
-    return tuple(
+    broken = [
         FarmViolation(rule.kind, _message(rule.fault, mission), rule.fault.action, drone=drone)
         for drone, mission in enumerate(_missions(farm_plan), start=1)
         for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
-    )
+    ]
+    return (*_doubts(farm_plan.farm), *broken)
 
 
 def judged(farm_plan: FarmPlan) -> FarmPlan:
@@ -126,6 +128,14 @@ def judged(farm_plan: FarmPlan) -> FarmPlan:
 def is_mission_file(name: str) -> bool:
     """Whether a file of that name is one that this package writes."""
     return name == README or _MISSION_FILE.fullmatch(name) is not None
+
+
+def _doubts(farm: Farm) -> list[FarmViolation]:
+    """Ponds whose place is a guess: nobody flies there before their owner has looked at them."""
+    if not farm.doubts:
+        return []
+    fault = doubt_fault(farm.doubts)
+    return [FarmViolation("unconfirmed", fault.message, fault.action)]
 
 
 def _missions(farm_plan: FarmPlan) -> list[Mission]:

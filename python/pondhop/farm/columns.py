@@ -1,0 +1,217 @@
+"""Which column of a table holds what, in the headings of many languages and programs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from pondhop.errors import Fault
+from pondhop.farm.degrees import Axis, hemisphere
+from pondhop.farm.features import Source, normal_name, number_of
+from pondhop.farm.vocabulary import column_words
+
+AXES: tuple[Axis, Axis] = ("lon", "lat")
+
+HEADER_ACTION = "name the columns in the first line, as in: pond,lon,lat"
+
+
+def _any_of(*words: str) -> str:
+    return "|".join(sorted((re.escape(normal_name(word)) for word in words), key=len, reverse=True))
+
+
+_LON_WORDS = _any_of(*column_words("longitude"))
+_LAT_WORDS = _any_of(*column_words("latitude"))
+_BEFORE = (
+    r"(?:gps|coordenadas?|coordinates?|coord|coor|koordinate|point|pos|position|map|geo|ponto|punto|centroid|center)?"
+)
+_AFTER = (
+    r"(?:coordenada|coordinate|coord|coor)?(?:deg|degrees|degree|dd|wgs84|decimal|decimals|epsg4326|grados|graus|gps|dms|gms|"
+    r"decimaldegrees|gradosdecimales|grausdecimais)?"
+)
+_SIDE = r"(?P<side>north|south|east|west|norte|sur|sul|este|leste|oeste|[nsew])?"
+_CORNERS = {
+    **dict.fromkeys(("ul", "tl", "nw", "upperleft", "topleft", "northwest"), 0),
+    **dict.fromkeys(("ll", "bl", "sw", "lowerleft", "bottomleft", "southwest"), 1),
+    **dict.fromkeys(("lr", "br", "se", "lowerright", "bottomright", "southeast"), 2),
+    **dict.fromkeys(("ur", "tr", "ne", "upperright", "topright", "northeast"), 3),
+    **{str(number): number - 1 for number in (1, 2, 3, 4)},
+}
+"""Position of a corner in a ring that runs upper left, lower left, lower right, upper right; or as numbered."""
+
+_EASTING = _any_of(*column_words("easting"))
+_NORTHING = _any_of(*column_words("northing"))
+_ZONE = _any_of(*column_words("zone"))
+_LAT_SIDE = _any_of(*column_words("side_of_latitude"))
+_LON_SIDE = _any_of(*column_words("side_of_longitude"))
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Which column holds what.
+
+    Attributes
+    ----------
+    names
+        The headings.
+    corners
+        Column indices of longitude and latitude: one pair for a point, four for the corners of a pond.
+    wkt
+        The column of outlines as text.
+    is_compass
+        Whether corners are named by where they lie.
+    sides
+        Column with the letter of the hemisphere for each axis.
+    signs
+        What a heading such as ``Lat (S)`` says about positive numbers.
+    zone
+        The column with the zone of UTM; then `corners` are easting and northing.
+    """
+
+    names: tuple[str, ...]
+    corners: tuple[tuple[int, int], ...] = ()
+    wkt: int | None = None
+    is_compass: bool = False
+    sides: dict[Axis, int] = field(default_factory=dict)
+    signs: dict[Axis, int] = field(default_factory=dict)
+    zone: int | None = None
+
+    def used(self) -> set[int]:
+        """Indices of the columns that tell where a pond is."""
+        found = {index for pair in self.corners for index in pair} | set(self.sides.values())
+        return found | {index for index in (self.wkt, self.zone) if index is not None}
+
+
+def _axis(name: str) -> tuple[Axis, str, int] | None:
+    """Which coordinate a column holds, of which corner, and the sign its heading gives.
+
+    ``lat_ul`` and ``UL Latitude`` are both (lat, ul); ``Lat (S)`` is negative.
+    """
+    plain = normal_name(name)
+    for axis, words in zip(AXES, (_LON_WORDS, _LAT_WORDS), strict=True):
+        corner = "|".join(sorted(_CORNERS, key=len, reverse=True))
+        for form in (
+            rf"{_BEFORE}(?:{words}){_AFTER}(?P<corner>{corner})?{_AFTER}",
+            rf"(?:corner)?(?P<corner>{corner}){_BEFORE}(?:{words}){_AFTER}",
+        ):
+            match = re.fullmatch(form, plain)
+            if match:
+                return axis, match["corner"] or "", 1
+        match = re.fullmatch(rf"{_BEFORE}(?:{words}){_AFTER}{_SIDE}{_AFTER}", plain)
+        side = hemisphere(match["side"]) if match and match["side"] else None
+        if side is not None and side[0] == axis:
+            return axis, "", side[1]
+    return None
+
+
+def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: str, source: Source) -> Columns | None:
+    """Find the columns of a table, or tell what is missing.
+
+    Parameters
+    ----------
+    header
+        The headings.
+    rows
+        Some lines below, which tell letters of hemispheres from other letters.
+    place
+        Where the headings stand, for faults.
+    source
+        Gets the faults.
+    """
+    names = tuple(name.strip() for name in header)
+    plain = [normal_name(name) for name in names]
+    wkt = next(
+        (index for index, name in enumerate(plain) if name in {"wkt", "geometry", "geom", "thegeom", "shape"}), None
+    )
+    if wkt is not None and rows and not any("(" in row[wkt] for row in rows if len(row) > wkt):
+        wkt = None
+    found: dict[tuple[Axis, str], int] = {}
+    signs: dict[Axis, int] = {}
+    for index, name in enumerate(names):
+        key = _axis(name)
+        if key is None:
+            continue
+        axis, corner, sign = key
+        if (axis, corner) in found:
+            message = f"columns {names[found[axis, corner]]!r} and {name!r} both hold a {axis}"
+            source.faults.append(Fault(place, message, "keep one of them"))
+            return None
+        found[axis, corner] = index
+        if sign < 0:
+            signs[axis] = sign
+    zone = next((index for index, name in enumerate(plain) if re.fullmatch(_ZONE, name)), None)
+    eastings = [index for index, name in enumerate(plain) if re.fullmatch(_EASTING, name)]
+    northings = [index for index, name in enumerate(plain) if re.fullmatch(_NORTHING, name)]
+    if not eastings and not northings and zone is not None and ("lon", "") in found and ("lat", "") in found:
+        # Columns X and Y are metres where a zone stands beside them.
+        is_metres = any(_is_beyond_degrees(row, found["lon", ""]) for row in rows)
+        eastings, northings = ([found["lon", ""]], [found["lat", ""]]) if is_metres else ([], [])
+    if zone is not None and len(eastings) == len(northings) == 1:
+        return Columns(names, ((eastings[0], northings[0]),), zone=zone)
+    if wkt is None and not found:
+        shown = ", ".join(names)[:80]
+        seen = "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {shown}"
+        action = HEADER_ACTION
+        if eastings and northings:
+            action = f"add a column zone, as in 48N, for the {names[eastings[0]]} and {names[northings[0]]} of UTM; or {action}"
+        source.faults.append(Fault(place, f"no longitude and latitude columns; the first line has {seen}", action))
+        return None
+    if not found or (wkt is not None and ("lon", "") not in found):
+        return Columns(names, (), wkt)
+    return _with_corners(names, found, _sides(plain, rows, found), signs, place, source)
+
+
+def _is_beyond_degrees(row: Sequence[str], index: int) -> bool:
+    number = number_of(row[index].replace(",", "")) if index < len(row) else None
+    return number is not None and abs(number) > 360.0
+
+
+def _sides(plain: Sequence[str], rows: Sequence[Sequence[str]], found: dict[tuple[Axis, str], int]) -> dict[Axis, int]:
+    """Columns with the letters of hemispheres: called so, or right beside their coordinate and nothing but letters."""
+    sides: dict[Axis, int] = {}
+    for axis, words in zip(AXES, (_LON_SIDE, _LAT_SIDE), strict=True):
+        coordinate = found.get((axis, ""))
+        if coordinate is None:
+            continue
+        for index, name in enumerate(plain):
+            cells = [row[index].strip() for row in rows if index < len(row) and row[index].strip()]
+            told = [hemisphere(cell) for cell in cells]
+            if not cells or any(side is None or side[0] != axis for side in told):
+                continue
+            is_beside = index == coordinate + 1 and max(map(len, cells)) <= 2
+            if (
+                re.fullmatch(words, name)
+                or is_beside
+                or name in {"hemisphere", "hemisferio", "hemisfério", "hem", "半球"}
+            ):
+                sides[axis] = index
+                break
+    return sides
+
+
+def _with_corners(
+    names: tuple[str, ...],
+    found: dict[tuple[Axis, str], int],
+    sides: dict[Axis, int],
+    signs: dict[Axis, int],
+    place: str,
+    source: Source,
+) -> Columns | None:
+    """The columns of a point or of four corners, or the fault of what is missing."""
+    labels = sorted({corner for _, corner in found if corner})
+    by_corner = {_CORNERS[label]: label for label in labels}
+    is_compass = not any(label.isdecimal() for label in labels)
+    expected = [
+        by_corner.get(corner, ("ul", "ll", "lr", "ur")[corner] if is_compass else str(corner + 1))
+        for corner in range(4)
+    ]
+    missing = [f"{axis} of corner {label}" for label in expected for axis in AXES if (axis, label) not in found]
+    if not missing:
+        corners = tuple((found["lon", label], found["lat", label]) for label in expected)
+        return Columns(names, corners, None, is_compass)
+    if not labels or any((axis, "") in found for axis in AXES):
+        missing = [axis for axis in AXES if (axis, "") not in found]
+        if not missing:
+            return Columns(names, ((found["lon", ""], found["lat", ""]),), sides=sides, signs=signs)
+    source.faults.append(Fault(place, f"no column for {', '.join(missing)}", HEADER_ACTION))
+    return None

@@ -1,0 +1,89 @@
+"""Numbers and angles as people type them: decimal commas, degrees with minutes and seconds, letters of hemispheres."""
+
+from __future__ import annotations
+
+import re
+from typing import Literal
+
+from pondhop.farm.features import number_of
+from pondhop.farm.vocabulary import hemisphere_words
+
+Axis = Literal["lon", "lat"]
+
+_MINUS = str.maketrans({"−": "-", "–": "-", "—": "-", "\u2010": "-", "\u2011": "-", "－": "-", "＋": "+"})
+_SIDES: dict[str, tuple[Axis, int]] = {
+    "north": ("lat", 1),
+    "south": ("lat", -1),
+    "east": ("lon", 1),
+    "west": ("lon", -1),
+}
+_HEMISPHERES = {word: _SIDES[side] for side, words in hemisphere_words().items() for word in words}
+"""Letters and words of each side; O is west in Spanish and Portuguese (in German east, where tables now write E)."""
+
+_LETTERS = "|".join(sorted(map(re.escape, _HEMISPHERES), key=len, reverse=True))
+_SIGNED = re.compile(
+    rf"(?P<before>{_LETTERS})?\s*(?P<sign>[+-])?\s*(?P<angle>\d[^A-Za-z]*?(?:d[^A-Za-z]+(?:m[^A-Za-z]*(?:s[^A-Za-z]*)?)?)?)\s*"
+    rf"(?P<after>{_LETTERS})?\.?",
+    re.IGNORECASE,
+)
+_ANGLE = re.compile(
+    r"(?P<degrees>\d{1,3}(?:\.\d+)?)(?:\s*(?:[°º˚d:]|\s|-)\s*"
+    r"(?:(?P<minutes>\d{1,2}(?:\.\d+)?)\s*(?:['’′´`‘m:]|\s|-|$)\s*)?"
+    r"(?:(?P<seconds>\d{1,2}(?:\.\d+)?)\s*(?:[\"”″“s]|''|’’|′′|´´)?)?)?\s*",
+    re.IGNORECASE,
+)
+
+
+def plain_number(text: str) -> float | None:
+    """A number with a decimal point or comma and any kind of minus; ``None`` for what is none."""
+    plain = text.strip().translate(_MINUS)
+    number = number_of(plain)
+    if number is None and re.fullmatch(r"[+-]?\d*,\d+", plain):
+        number = number_of(plain.replace(",", "."))
+    return number
+
+
+def metres(text: str) -> float | None:
+    """A coordinate of a projection, with or without thousands marked: ``1,116,600.5``, ``1.116.600,5``, ``576 800``."""
+    plain = re.sub(r"(?<=\d)[  '](?=\d{3})", "", text.strip().translate(_MINUS))
+    plain = re.sub(r"\s*m(?:etres|eters)?$", "", plain, flags=re.IGNORECASE)
+    if re.fullmatch(r"[+-]?\d{1,3}(?:,\d{3})+(?:\.\d+)?", plain):
+        plain = plain.replace(",", "")
+    elif re.fullmatch(r"[+-]?\d{1,3}(?:\.\d{3}){2,}(?:,\d+)?", plain):
+        plain = plain.replace(".", "").replace(",", ".")
+    return plain_number(plain)
+
+
+def hemisphere(text: str) -> tuple[Axis, int] | None:
+    """The axis and the sign that a letter or word stands for."""
+    return _HEMISPHERES.get(text.strip().strip(".").lower())
+
+
+def parse_degrees(text: str, axis: Axis) -> float | None:
+    """Degrees as people write them: ``-89.17``, ``89,17 W``, ``10°06'01.4"N``, ``N 10 06 01.4``, ``10d06m``.
+
+    Returns ``None`` for what is no angle of this axis.
+    """
+    number = plain_number(text)
+    if number is not None:
+        return number
+    match = _SIGNED.fullmatch(text.strip().translate(_MINUS))
+    if match is None or (match["before"] and match["after"]):
+        return None
+    angle = _ANGLE.fullmatch(re.sub(r"(?<=\d),(?=\d)", ".", match["angle"].strip()))
+    if angle is None:
+        return None
+    degrees, minutes, seconds = (float(angle[part] or 0.0) for part in ("degrees", "minutes", "seconds"))
+    has_fraction = any(
+        "." in (angle[part] or "") and angle[finer] for part, finer in (("degrees", "minutes"), ("minutes", "seconds"))
+    )
+    if minutes >= 60.0 or seconds >= 60.0 or has_fraction:
+        return None
+    value = degrees + minutes / 60.0 + seconds / 3600.0
+    letter = match["before"] or match["after"]
+    if letter:
+        letter_axis, sign = _HEMISPHERES[letter.lower()]
+        if letter_axis != axis or (match["sign"] == "-" and sign > 0):
+            return None
+        return sign * value
+    return -value if match["sign"] == "-" else value

@@ -1,0 +1,193 @@
+"""What each pond is called: the column of the file that tells all ponds apart, or numbers where none does."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from pondhop.errors import Fault
+from pondhop.farm.features import (
+    NAME_COLUMNS,
+    Feature,
+    Source,
+    clean_text,
+    is_blank,
+    listed,
+    normal_name,
+    shortened,
+    text_of,
+)
+from pondhop.farm.ponds import Draft
+from pondhop.farm.roles import POND_COLUMNS, ROLE_COLUMNS
+from pondhop.farm.words import is_plain_word, is_unnamed
+from pondhop.places import distance_m
+
+_PREFERRED = ("id", "pond_id", "pond", "pond_name", "pond_no", "name", "label")
+"""Columns that hold ids, the first one best; then those of other languages, in the order of the file."""
+
+_PROGRAM_COLUMNS = ("@id", "fid", "osm_id", "osm_way_id", "objectid", "gid", "ogc_fid", "uid", "uuid", "gml_id")
+"""Columns that programs fill in: they tell ponds apart, but nobody calls them so."""
+
+MAX_ID_LETTERS = 40
+"""A column with longer values is a remark."""
+
+COPY_M = 2.0
+"""Ponds nearer than this with one id in two layers are one pond drawn twice."""
+
+
+def name_ponds(drafts: Sequence[Draft], source: Source) -> None:
+    """Give every pond an id of its own, with notes, or faults where two have the same."""
+    features = list({id(draft.feature): draft.feature for draft in drafts}.values())
+    ids = _ids(features, source)
+    for draft in drafts:
+        draft.id = ids[id(draft.feature)]
+    _number_unnamed(drafts, source)
+    for draft in drafts:
+        if draft.part:
+            draft.id = f"{draft.id} {draft.part}"
+    _tell_copies(drafts, source)
+
+
+def _columns(features: Sequence[Feature]) -> list[str]:
+    """The columns that may hold ids, by their plain names, the best ones first."""
+    in_file = dict.fromkeys(normal_name(key) for feature in features for key in feature.properties)
+    preferred = [normal_name(name) for name in _PREFERRED]
+    of_ponds = [key for key in in_file if key in POND_COLUMNS and key not in preferred]
+    of_names = [normal_name(name) for name in NAME_COLUMNS if normal_name(name) in in_file]
+    return list(dict.fromkeys([*(key for key in preferred if key in in_file), *of_ponds, *of_names]))
+
+
+def _value(feature: Feature, column: str) -> str:
+    found = feature.find(column)
+    if found is None or isinstance(found[1], dict | list):
+        return ""
+    return clean_text(text_of(found[1]))
+
+
+def _ids(features: Sequence[Feature], source: Source) -> dict[int, str]:
+    """The id of each feature, by its identity; blank where the file has none."""
+    columns = _columns(features)
+    values = {column: [_value(feature, column) for feature in features] for column in columns}
+    telling = next((column for column in columns if _tells_apart(values[column])), None)
+    if telling is None and any(len(set(filter(None, values[column]))) > 1 or len(features) > 2 for column in columns):
+        telling = next(_other_columns(features, columns), None)
+        if telling is not None:
+            values[telling] = [_value(feature, telling) for feature in features]
+    if telling is not None:
+        passed = [
+            column
+            for column in columns[: columns.index(telling) if telling in columns else None]
+            if any(values[column])
+        ]
+        if passed:
+            why = f"column {passed[0]!r} does not tell them apart"
+            source.notes.add(f"The ponds are named by column {telling!r}, because {why}.")
+        return {id(feature): value for feature, value in zip(features, values[telling], strict=True)}
+    own = [feature.own_id or "" for feature in features]
+    programs = ([_value(feature, normal_name(name)) for feature in features] for name in _PROGRAM_COLUMNS)
+    by_program = next((ids for ids in (own, *programs) if _tells_apart(ids)), None)
+    if by_program is not None and not any(len(set(filter(None, ids))) > 1 for ids in values.values()):
+        if any(any(ids) for ids in values.values()):
+            source.notes.add(
+                "The ponds are named by the ids of the program that made the file; no name tells them apart."
+            )
+        return {id(feature): value for feature, value in zip(features, by_program, strict=True)}
+    # No column names them all: the one that names most, and the others for the rest.
+    ranked = sorted(columns, key=lambda column: -len(set(filter(None, values[column]))))
+    return {
+        id(feature): next((values[column][index] for column in ranked if values[column][index]), feature.own_id or "")
+        for index, feature in enumerate(features)
+    }
+
+
+def _tells_apart(values: Sequence[str]) -> bool:
+    return all(values) and len(set(values)) == len(values) and not any(map(is_unnamed, values))
+
+
+def _other_columns(features: Sequence[Feature], columns: Sequence[str]) -> Iterator[str]:
+    """Columns of short texts of any other name that tell the features apart, in the order of the file."""
+    left_out = {*columns, *map(normal_name, (*ROLE_COLUMNS, *_PROGRAM_COLUMNS)), "services", "samplingpoint"}
+    for key in dict.fromkeys(key for feature in features for key in feature.properties):
+        values = [feature.properties.get(key) for feature in features]
+        is_text = all(
+            isinstance(value, str) and not is_blank(value) and len(value) <= MAX_ID_LETTERS for value in values
+        )
+        if normal_name(key) not in left_out and is_text and _tells_apart([text_of(value) for value in values]):
+            has_letters = all(any(letter.isalpha() for letter in text_of(value)) for value in values)
+            if has_letters:
+                yield normal_name(key)
+
+
+def _number_unnamed(drafts: Sequence[Draft], source: Source) -> None:
+    """Number ponds without an id, and those that share what is no name."""
+    features = list({id(draft.feature): draft.feature for draft in drafts}.values())
+    id_of = {id(draft.feature): draft.id for draft in drafts}
+    counts = Counter(id_of.values())
+    is_one_for_all = len(features) > 2 and len(counts) == 1 and not any(feature.folders for feature in features)
+    used = set(counts)
+    numbered: list[str] = []
+    num_unnamed = 0
+    for name, count in counts.items():
+        says_nothing = is_unnamed(name) or is_plain_word(name) or (is_one_for_all and bool(name))
+        if not name or (count > 1 and is_one_for_all and name.isdecimal()):
+            num_unnamed += _number(features, id_of, name, used, "")
+        elif count > 1 and says_nothing:
+            _number(features, id_of, name, used, f"{name} ")
+            numbered.append(name)
+    if num_unnamed:
+        source.notes.add(f"{num_unnamed} ponds without an id were numbered in the order of the file.")
+    if numbered:
+        example = f"{shortened(numbered[0])} 2"
+        source.notes.add(f"Ponds called alike were numbered in the order of the file, as in {example!r}.")
+    for draft in drafts:
+        draft.id = id_of[id(draft.feature)]
+
+
+def _number(features: Sequence[Feature], id_of: dict[int, str], name: str, used: set[str], prefix: str) -> int:
+    """Number the features of one name: by their place in the file without a prefix, among themselves with one."""
+    members = [(index, feature) for index, feature in enumerate(features) if id_of[id(feature)] == name]
+    for count, (index, feature) in enumerate(members, start=1):
+        number = count if prefix else index + 1
+        while f"{prefix}{number}" in used:
+            number += len(features)
+        id_of[id(feature)] = f"{prefix}{number}"
+        used.add(f"{prefix}{number}")
+    return len(members)
+
+
+def _tell_copies(drafts: Sequence[Draft], source: Source) -> None:
+    """Tell of ponds with one id: copies in two layers, equal numbers in two folders, or a fault."""
+    firsts: dict[str, Draft] = {}
+    doubles: list[tuple[Draft, Draft]] = []
+    for draft in drafts:
+        first = firsts.setdefault(draft.id, draft)
+        if first is not draft:
+            doubles.append((first, draft))
+    if not doubles:
+        return
+    across = [(first, second) for first, second in doubles if first.feature.folders != second.feature.folders]
+    copies = [pair for pair in across if distance_m(pair[0].point(), pair[1].point()) < COPY_M]
+    if copies:
+        layers = dict.fromkeys(_layer(draft) for pair in copies for draft in pair)
+        message = f"{len(copies)} ponds are there twice, in layers {listed(map(repr, layers))}"
+        source.faults.append(
+            Fault("file", message, f"choose one with --layer {next(iter(layers))!r}, or remove the other")
+        )
+    elif len(across) == len(doubles):
+        shared = {first.id for first, _ in doubles}
+        for draft in drafts:
+            if draft.id in shared and draft.feature.folders:
+                draft.id = f"{_layer(draft)} {draft.id}"
+        source.notes.add(
+            f"Ponds of one name in different folders were named with their folders, as in {doubles[0][1].id!r}."
+        )
+        across = [] if len({draft.id for draft in drafts}) == len(drafts) else across
+        doubles = across
+    for first, draft in doubles:
+        if (first, draft) not in copies:
+            message = f"id {shortened(draft.id)!r} is already that of {first.feature.place}"
+            source.faults.append(Fault(draft.feature.place, message, "give every pond an id of its own"))
+
+
+def _layer(draft: Draft) -> str:
+    return draft.feature.folders[-1] if draft.feature.folders else "none"

@@ -1,0 +1,136 @@
+"""What the names of features say, in the languages of those who farm ponds.
+
+Words of the Latin, Greek and Cyrillic alphabets match as whole words, accents aside where they are long enough to be told
+without; of other scripts, which do not set words apart or write endings onto them, they match anywhere. Longer phrases
+match first and their letters are used up: a "pump house" is no house, and the pond in "battery" (電池) is none.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from enum import Enum
+from functools import cache, lru_cache
+
+from pondhop.farm.vocabulary import meaning_words
+
+
+class Meaning(Enum):
+    """What a word says about a feature."""
+
+    POND = "pond"
+    DEPOT = "depot"
+    START = "start"
+    """Perhaps the depot, perhaps a house: home, base, launch."""
+    STATION = "station"
+    NO_FLY = "no_fly"
+    FENCE = "fence"
+    BOUNDARY = "boundary"
+    OTHER = "other"
+    UNCERTAIN = "uncertain"
+    """Said of ponds and of areas to keep out of: zone, sector."""
+    SAMPLING = "sampling"
+    """A place where water is taken."""
+    UNNAMED = "unnamed"
+    """What a program calls things that nobody named."""
+
+
+_LETTER_RUN = re.compile(r"[^\W\d_]+")
+_SPACED_SCRIPTS = ("LATIN", "GREEK", "CYRILLIC")
+
+MIN_PLAIN_LETTERS = 5
+"""Shorter words mean other things without their accents: hồ is a lake, ho is not."""
+
+
+def _is_spaced(letter: str) -> bool:
+    return unicodedata.name(letter, "").startswith(_SPACED_SCRIPTS)
+
+
+def _stem(word: str) -> str:
+    """A word without plural s, and without accents where it is long."""
+    if len(word) >= MIN_PLAIN_LETTERS:
+        word = "".join(letter for letter in unicodedata.normalize("NFKD", word) if not unicodedata.combining(letter))
+    return word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith("ss") else word
+
+
+def _words(text: str) -> list[str]:
+    """The words of a name: split at blanks, digits, signs and inner capitals, as in NoFlyZone_2."""
+    text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", unicodedata.normalize("NFC", text))
+    return [
+        _stem(word)
+        for word in _LETTER_RUN.findall(text.replace("'", "").replace("\N{RIGHT SINGLE QUOTATION MARK}", "").casefold())
+    ]
+
+
+@cache
+def _phrases() -> tuple[dict[str, list[tuple[tuple[str, ...], Meaning]]], list[tuple[str, Meaning]]]:
+    """Phrases of spaced scripts by their first word, and those of the others; the longest first."""
+    spaced: dict[str, list[tuple[tuple[str, ...], Meaning]]] = {}
+    joined: list[tuple[str, Meaning]] = []
+    for meaning_name, phrases in meaning_words().items():
+        meaning = Meaning[meaning_name.upper()]
+        for phrase in phrases:
+            letters = [letter for letter in phrase if letter.isalpha()]
+            if not letters:
+                continue
+            if all(map(_is_spaced, letters)):
+                words = tuple(_words(phrase))
+                spaced.setdefault(words[0], []).append((words, meaning))
+            else:
+                joined.append((unicodedata.normalize("NFKC", phrase).casefold(), meaning))
+    for same_start in spaced.values():
+        same_start.sort(key=lambda item: -len(item[0]))
+    return spaced, sorted(joined, key=lambda item: -len(item[0]))
+
+
+@lru_cache(maxsize=65_536)
+def meanings(text: str) -> frozenset[Meaning]:
+    """Everything that the words of a name say; empty for a name that says nothing."""
+    spaced, joined = _phrases()
+    found: set[Meaning] = set()
+    if not text.isascii():
+        plain = unicodedata.normalize("NFKC", text).casefold()
+        for phrase, meaning in joined:
+            if _stands_in(phrase, meaning, plain):
+                found.update(other for same, other in joined if same == phrase)
+                plain = plain.replace(phrase, " ")
+    words = _words(text)
+    at = 0
+    while at < len(words):
+        matches = [item for item in spaced.get(words[at], ()) if tuple(words[at : at + len(item[0])]) == item[0]]
+        if not matches:
+            at += 1
+            continue
+        longest = len(matches[0][0])
+        found.update(meaning for phrase, meaning in matches if len(phrase) == longest)
+        at += longest
+    return frozenset(found)
+
+
+def _stands_in(phrase: str, meaning: Meaning, text: str) -> bool:
+    """Whether a phrase of an unspaced script stands in a text.
+
+    A single sign is part of too many names: pond "east of the river" is none. It counts at the end, where these
+    languages put what a thing is; only a sign for ponds counts anywhere.
+    """
+    if len(phrase) > 1 or meaning is Meaning.POND:
+        return phrase in text
+    return re.sub(r"[\W\d_号號]+$", "", text).endswith(phrase)
+
+
+def is_unnamed(text: str) -> bool:
+    """Whether a name is what a program calls things that nobody named, with or without a number."""
+    rest = [word for word in _words(text) if Meaning.UNNAMED not in meanings(word)]
+    has_foreign = any(letter.isalpha() and not _is_spaced(letter) for letter in text)
+    return Meaning.UNNAMED in meanings(text) and (not rest or has_foreign or _is_phrase(text, Meaning.UNNAMED))
+
+
+def _is_phrase(text: str, meaning: Meaning) -> bool:
+    """Whether a name is exactly one phrase of the list."""
+    words = tuple(_words(text))
+    return bool(words) and (words, meaning) in _phrases()[0].get(words[0], ())
+
+
+def is_plain_word(text: str) -> bool:
+    """Whether a name is a word for ponds alone, which tells no pond from another."""
+    return _is_phrase(text, Meaning.POND) and not any(letter.isdigit() for letter in text)
