@@ -250,6 +250,36 @@ fn slack_ends_where_the_limit_does() {
     }
 }
 
+/// A pond far away makes any longest route of the others as good as another.
+#[test]
+fn a_longest_route_on_its_bound_leaves_the_effort_to_the_total() {
+    let mut ponds = generate(48, Variant::Authors, 6).unwrap();
+    let depot = ponds.depot;
+    ponds.ponds.push(Point::new(depot.x + 1.5, depot.y));
+    let problem = Problem::research(depot, &ponds.ponds, 6).unwrap();
+    // The least total within a limit, which nothing else is worked for.
+    let limit = 2.0 * problem.visits().iter().map(|visit| visit.position.distance(depot)).fold(0.0, f64::max);
+    let totals = [2_000, 20_000, 200_000].map(|num_iterations| {
+        let plan = plan(&problem, &iterations(num_iterations));
+        assert!(plan.max_route_length() <= limit * (1.0 + 1e-9));
+        plan.total_length()
+    });
+    let visits = problem.visits().to_vec();
+    let vehicle_type = VehicleType { max_duration: limit * (1.0 + 1e-12), ..VehicleType::unlimited(6) };
+    let limited = Problem::new(Depot { position: depot }, visits, vehicle_type).unwrap();
+    let of_total = plan(&limited, &Options { goal: Goal::Total, ..iterations(200_000) }).total_length();
+    assert!(totals[1] <= totals[0] * 1.001 && totals[2] <= totals[1] * 1.001, "{totals:?}");
+    assert!(totals[2] <= of_total * 1.001, "{totals:?} {of_total}");
+}
+
+#[test]
+fn ponds_at_the_depot_are_planned_at_any_effort() {
+    let problem = Problem::research(Point::new(1.0, 1.0), &[Point::new(1.0, 1.0); 20], 3).unwrap();
+    for num_iterations in [10, 1_000, 100_000] {
+        assert_eq!(plan(&problem, &iterations(num_iterations)).max_route_length(), 0.0);
+    }
+}
+
 fn farm_of(ponds: &[Point], depot: Point, max_duration: f64) -> Problem {
     let visits = ponds.iter().map(|&position| Visit::at(position)).collect();
     let vehicle_type = VehicleType { max_duration, ..VehicleType::unlimited(5) };

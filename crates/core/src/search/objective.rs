@@ -66,13 +66,22 @@ impl Objective {
 
     /// What a plan with routes of these costs costs.
     pub fn value(&self, costs: RouteCosts) -> f64 {
-        self.max_weight * costs.longest + self.total_weight * costs.total + self.excess_price * costs.excess
+        self.max_weight * costs.longest + self.total_weight * costs.total + self.excess_price * self.excess(costs)
+    }
+
+    /// By how much routes exceed the cap, of which no step makes them go beyond, but a plan may begin there; and other limits.
+    fn excess(&self, costs: RouteCosts) -> f64 {
+        costs.excess + if costs.longest > self.cap { costs.longest / self.cap - 1.0 } else { 0.0 }
     }
 
     /// By what two plans are compared in the end: the longest route first, if it counts, then the total. The value, which
     /// guides the search, would take a longer route for a shorter total.
     pub fn rank(&self, costs: RouteCosts) -> Rank {
-        Rank { longest: if self.max_weight > 0.0 { costs.longest } else { 0.0 }, ..Rank::of(costs) }
+        Rank {
+            excess: self.excess(costs),
+            longest: if self.max_weight > 0.0 { costs.longest } else { 0.0 },
+            total: costs.total,
+        }
     }
 }
 

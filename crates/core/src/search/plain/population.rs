@@ -40,6 +40,8 @@ const MAX_PARENTS: usize = 16;
 const CHILD_STEPS_PER_VISIT: f64 = 10.0;
 /// Share of the effort for one child, at least: with more children they become alike before the effort is used.
 const MIN_CHILD_SHARE: f64 = 0.006;
+/// Share of what is left for children that plans are annealed for when only the total counts from then on.
+const TURN_SHARE: f64 = 0.25;
 /// Parts of other plans are first judged by the sum of this power of the routes' costs: low enough for a longer route to be
 /// taken for a shorter total, high enough for what is gained not to be lost when the routes are evened out.
 const CROWDING_POWER: i32 = 16;
@@ -53,12 +55,14 @@ pub(super) struct Population {
     random: Random,
     /// Share of the effort for one child.
     child_share: f64,
+    /// What no route may cost more than, once only the total counts.
+    cap: Option<f64>,
 }
 
 impl Population {
     /// One plan, which has no children.
     pub fn single(chain: Chain<SharedAirspace>) -> Self {
-        Self { chains: vec![chain], random: Random::new(0), child_share: 0.0 }
+        Self { chains: vec![chain], random: Random::new(0), child_share: 0.0, cap: None }
     }
 
     /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until those are left that
@@ -87,19 +91,25 @@ impl Population {
         };
         let random = Random::new(search.seed(u64::MAX - thread as u64));
         let child_share = (CHILD_STEPS_PER_VISIT / steps_per_visit).max(MIN_CHILD_SHARE);
-        let mut population = Self { chains, random, child_share };
+        let mut population = Self { chains, random, child_share, cap: None };
         let num_starts = population.chains.len();
         let num_rounds = (num_starts as f64 / num_parents as f64).log2().ceil() as usize;
         // Also starts that are all to be parents must first be improved.
         for rounds_left in (1..=num_rounds.max(usize::from(num_starts > 1))).rev() {
-            population.run_round(search, effort, rounds_left);
+            // If there will be children, they get the effort that the longest route does not need.
+            let floor = if num_parents > 1 && search.is_lexicographic() { search.floor() } else { 0.0 };
+            population.run_round(search, effort, rounds_left, floor);
+            if population.best().best.is_down_to(floor) {
+                population.chains.truncate(num_parents);
+                break;
+            }
             population.chains.truncate(population.chains.len().div_ceil(2).max(num_parents));
         }
         population
     }
 
-    /// Anneals all plans for the same share of what is left for the race.
-    fn run_round(&mut self, search: &Search<'_>, effort: &mut Effort<'_>, rounds_left: usize) {
+    /// Anneals all plans for the same share of what is left for the race, or until one has no route that costs more than `floor`.
+    fn run_round(&mut self, search: &Search<'_>, effort: &mut Effort<'_>, rounds_left: usize, floor: f64) {
         let begin = effort.share();
         let slice = (RACE_END - begin).max(0.0) / rounds_left as f64 / self.chains.len() as f64;
         effort.longest_elsewhere =
@@ -107,7 +117,10 @@ impl Population {
         for (index, chain) in self.chains.iter_mut().enumerate() {
             let from = begin + slice * index as f64;
             chain.restart(chain.objective);
-            anneal(search, effort, chain, (from, from + slice), RACE_HEAT);
+            anneal(search, effort, chain, (from, from + slice), RACE_HEAT, floor);
+            if chain.best.is_down_to(floor) {
+                break;
+            }
             // Half of what is wrong with a plan that was annealed for a short while is quickly mended, and hides the rest.
             if rounds_left == 1 {
                 search.balance(chain);
@@ -135,7 +148,7 @@ impl Population {
     }
 
     /// Improves the plan by itself, by `schedule`, or the plans by children, until the share `until` of the effort is used, or
-    /// no route is longer than `floor`, which none can undercut.
+    /// no route costs more than `floor`, which none can undercut. Children go on for the total then, unless there is slack for it.
     pub fn improve(
         &mut self,
         search: &Search<'_>,
@@ -149,10 +162,20 @@ impl Population {
             return self.chains[0].anneal(search.network, effort, schedule, until, floor);
         }
         let mut share = effort.share();
-        while share < until && !self.best().best.is_down_to(floor) {
+        // Where all is at the depot, no step is made.
+        while share < until && !self.best().best.is_down_to(0.0) {
+            if self.cap.is_none() && self.best().best.is_down_to(floor) {
+                if !search.is_lexicographic() {
+                    return;
+                }
+                self.turn_to_total(search, effort, floor, until);
+                share = effort.share();
+                continue;
+            }
             let mut child = self.child(search);
             effort.longest_elsewhere = self.best().best.max_route_cost();
-            anneal(search, effort, &mut child, (share, (share + self.child_share).min(until)), CHILD_HEAT);
+            let end = (share + self.child_share).min(until);
+            anneal(search, effort, &mut child, (share, end), CHILD_HEAT, if self.cap.is_none() { floor } else { 0.0 });
             share = effort.share();
             self.take(search, child);
         }
@@ -162,8 +185,24 @@ impl Population {
         let keeper = self.random.below(self.chains.len());
         let giver = (keeper + 1 + self.random.below(self.chains.len() - 1)) % self.chains.len();
         let state = cross(search.network, &self.chains[keeper].best, &self.chains[giver].best, &mut self.random);
-        let objective = Objective::longest_route(search.network.num_routes, state.costs());
+        let objective = match self.cap {
+            None => Objective::longest_route(search.network.num_routes, state.costs()),
+            Some(cap) => Objective::total_within(cap, state.costs()),
+        };
         Chain::new(search.network, state, objective, self.random.bits(), SharedAirspace)
+    }
+
+    /// From now on only the total counts, while no route costs more than `cap`, which none can undercut: anneals all plans for that.
+    fn turn_to_total(&mut self, search: &Search<'_>, effort: &mut Effort<'_>, cap: f64, until: f64) {
+        self.cap = Some(cap);
+        let begin = effort.share();
+        let slice = TURN_SHARE * (until - begin) / self.chains.len() as f64;
+        for (index, chain) in self.chains.iter_mut().enumerate() {
+            let from = begin + slice * index as f64;
+            chain.restart(Objective::total_within(cap, chain.best.costs()));
+            anneal(search, effort, chain, (from, from + slice), CHILD_HEAT, 0.0);
+        }
+        sort(&mut self.chains);
     }
 
     /// Gives `child` what is better in the others, and puts it in the place of the worst, if it is better.
@@ -182,8 +221,10 @@ impl Population {
     fn enrich(&mut self, search: &Search<'_>, child: &mut Chain<SharedAirspace>) {
         let objective = child.objective;
         let crowding = |costs: &[f64]| costs.iter().map(|cost| (cost / objective.target).powi(CROWDING_POWER)).sum();
-        let mut is_balanced = false;
-        if let Some(mut shorter) = self.assemble_all(search, &child.best, objective.target, crowding) {
+        let mut is_balanced = self.cap.is_some();
+        if self.cap.is_none()
+            && let Some(mut shorter) = self.assemble_all(search, &child.best, objective.target, crowding)
+        {
             balance(search.network, search.budget, &mut shorter);
             if objective.value(shorter.costs()) < objective.value(child.best.costs()) {
                 child.adopt(&shorter);
@@ -194,7 +235,7 @@ impl Population {
         let better = self.assemble_all(search, &child.best, objective.target, value);
         if let Some(better) = better.filter(|better| better.excess() <= child.best.excess()) {
             child.adopt(&better);
-            is_balanced = false;
+            is_balanced = self.cap.is_some();
         }
         if !is_balanced {
             search.balance(child);
@@ -226,16 +267,18 @@ fn sort(chains: &mut [Chain<SharedAirspace>]) {
     chains.sort_by(|a, b| a.best_rank.compare(&b.best_rank));
 }
 
-/// Anneals between two shares of the effort, with temperatures relative to the longest route.
+/// Anneals between two shares of the effort, with temperatures relative to the longest route, or until no route costs more than
+/// `floor`.
 fn anneal(
     search: &Search<'_>,
     effort: &mut Effort<'_>,
     chain: &mut Chain<SharedAirspace>,
     (begin, end): (f64, f64),
     heat: (f64, f64),
+    floor: f64,
 ) {
     let schedule = Schedule::scaled(begin, end, heat, chain.best.max_route_cost());
-    chain.anneal(search.network, effort, &schedule, end, 0.0);
+    chain.anneal(search.network, effort, &schedule, end, floor);
 }
 
 /// Shares of the sectors of a start: equal for the first, random about that for the others.

@@ -106,7 +106,7 @@ impl Thread<'_> {
         // Every thread comes to every meeting, also one that has nothing left to do, or the others would wait for ever.
         for until in MEETINGS.into_iter().chain([MAX_END]) {
             population.improve(search, &mut effort, &schedule, until.min(max_end), floor);
-            if let Some(best) = self.meeting.best_of_all(self.index, population.best()) {
+            if let Some(best) = self.meeting.best_of_all(self.index, &population.best().best, floor) {
                 population.welcome(&best);
             }
         }
