@@ -153,7 +153,8 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
         seen = "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {shown}"
         action = HEADER_ACTION
         if eastings and northings:
-            action = f"add a column zone, as in 48N, for the {names[eastings[0]]} and {names[northings[0]]} of UTM; or {action}"
+            pair = f"{names[eastings[0]]} and {names[northings[0]]}"
+            action = f"add a column zone, as in 48N, for the {pair} of UTM; or {action}"
         source.faults.append(Fault(place, f"no longitude and latitude columns; the first line has {seen}", action))
         return None
     if not found or (wkt is not None and ("lon", "") not in found):

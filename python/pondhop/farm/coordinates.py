@@ -85,7 +85,7 @@ def _lies_within(positions: Positions) -> bool:
     """Whether all positions are good, which is quickly told of the many that are."""
     lons, lats = zip(*positions, strict=True)
     extremes = (min(lons), max(lons), min(lats), max(lats))
-    return max(map(abs, extremes[:2])) <= 180.0 and max(map(abs, extremes[2:])) <= MAX_LATITUDE_DEG
+    return bool(max(map(abs, extremes[:2])) <= 180.0 and max(map(abs, extremes[2:])) <= MAX_LATITUDE_DEG)
 
 
 def _coordinate_fault(place: str, lon: float, lat: float) -> Fault | None:

@@ -10,7 +10,15 @@ from pondhop.farm.vocabulary import hemisphere_words
 
 Axis = Literal["lon", "lat"]
 
-_MINUS = str.maketrans({"−": "-", "–": "-", "—": "-", "\u2010": "-", "\u2011": "-", "－": "-", "＋": "+"})
+_SIGNS = str.maketrans(
+    dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2212\uff0d", "-")
+    | dict.fromkeys("\uff0b", "+")
+    | dict.fromkeys("\u2018\u2019\u2032\u00b4\u0060", "'")
+    | dict.fromkeys("\u201c\u201d\u2033", '"')
+    | dict.fromkeys("\u00ba\u02da", "\u00b0")
+)
+"""Signs that keyboards and word processors write for minus, plus, degree, minutes and seconds."""
+
 _SIDES: dict[str, tuple[Axis, int]] = {
     "north": ("lat", 1),
     "south": ("lat", -1),
@@ -27,16 +35,16 @@ _SIGNED = re.compile(
     re.IGNORECASE,
 )
 _ANGLE = re.compile(
-    r"(?P<degrees>\d{1,3}(?:\.\d+)?)(?:\s*(?:[°º˚d:]|\s|-)\s*"
-    r"(?:(?P<minutes>\d{1,2}(?:\.\d+)?)\s*(?:['’′´`‘m:]|\s|-|$)\s*)?"
-    r"(?:(?P<seconds>\d{1,2}(?:\.\d+)?)\s*(?:[\"”″“s]|''|’’|′′|´´)?)?)?\s*",
+    r"(?P<degrees>\d{1,3}(?:\.\d+)?)(?:\s*(?:[°d:]|\s|-)\s*"
+    r"(?:(?P<minutes>\d{1,2}(?:\.\d+)?)\s*(?:['m:]|\s|-|$)\s*)?"
+    r"(?:(?P<seconds>\d{1,2}(?:\.\d+)?)\s*(?:[\"s]|'')?)?)?\s*",
     re.IGNORECASE,
 )
 
 
 def plain_number(text: str) -> float | None:
     """A number with a decimal point or comma and any kind of minus; ``None`` for what is none."""
-    plain = text.strip().translate(_MINUS)
+    plain = text.strip().translate(_SIGNS)
     number = number_of(plain)
     if number is None and re.fullmatch(r"[+-]?\d*,\d+", plain):
         number = number_of(plain.replace(",", "."))
@@ -45,7 +53,7 @@ def plain_number(text: str) -> float | None:
 
 def metres(text: str) -> float | None:
     """A coordinate of a projection, with or without thousands marked: ``1,116,600.5``, ``1.116.600,5``, ``576 800``."""
-    plain = re.sub(r"(?<=\d)[  '](?=\d{3})", "", text.strip().translate(_MINUS))
+    plain = re.sub(r"(?<=\d)[  '](?=\d{3})", "", text.strip().translate(_SIGNS))
     plain = re.sub(r"\s*m(?:etres|eters)?$", "", plain, flags=re.IGNORECASE)
     if re.fullmatch(r"[+-]?\d{1,3}(?:,\d{3})+(?:\.\d+)?", plain):
         plain = plain.replace(",", "")
@@ -67,7 +75,7 @@ def parse_degrees(text: str, axis: Axis) -> float | None:
     number = plain_number(text)
     if number is not None:
         return number
-    match = _SIGNED.fullmatch(text.strip().translate(_MINUS))
+    match = _SIGNED.fullmatch(text.strip().translate(_SIGNS))
     if match is None or (match["before"] and match["after"]):
         return None
     angle = _ANGLE.fullmatch(re.sub(r"(?<=\d),(?=\d)", ".", match["angle"].strip()))

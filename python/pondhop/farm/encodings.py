@@ -1,11 +1,12 @@
 """The text of a file whose encoding nobody wrote down.
 
-UTF-8 is told from all others for certain. The others are told apart by what they say: a text that reads as letters of one
-script, next to each other as in words, is taken as that, with a note that names the guess.
+UTF-8 is told from all others for certain. The others are told apart by what they say: a text that reads as letters of
+one script, next to each other as in words, is taken as that, with a note that names the guess.
 """
 
 from __future__ import annotations
 
+import itertools
 import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,6 +15,9 @@ from pondhop.farm.features import Notes
 
 MAX_GUESSED_BYTES = 200_000
 """How much of a file is looked at to guess its encoding."""
+
+_LATIN_SIGNS = "\u00b0\u00ba\u00aa\u00b4\u2019"
+"""Degree, ordinals and apostrophes, which stand in Latin text without being letters."""
 
 _CHINESE = set(
     "塘池鱼虾蟹号東东西南北中区場场养殖水库甲乙丙丁一二三四五六七八九十大小新老上下左右湖田村名称经度纬编蚌龙鰻鳗"
@@ -105,7 +109,11 @@ def decode(content: bytes, notes: Notes, declared: str | None = None) -> str:
             return content.decode(declared)
         except (LookupError, UnicodeDecodeError):
             notes.add(f"The file says that it is {declared[:20]}, which it is not.")
-    codec, label = guess_encoding(content[:MAX_GUESSED_BYTES])
+    # Up to the end of a line, so that no letter is cut in two.
+    sample, _, _ = content[:MAX_GUESSED_BYTES].rpartition(b"\n")
+    codec, label = guess_encoding(
+        sample if len(content) > MAX_GUESSED_BYTES and sample else content[:MAX_GUESSED_BYTES]
+    )
     notes.add(
         f"The file is not UTF-8; it was read as {label}. If names look wrong, save it as UTF-8 "
         "(in Excel: Save as, CSV UTF-8)."
@@ -114,7 +122,7 @@ def decode(content: bytes, notes: Notes, declared: str | None = None) -> str:
 
 
 def guess_encoding(content: bytes) -> tuple[str, str]:
-    """The codec in which bytes read most like words, and its name for people; Windows Latin where nothing speaks for another."""
+    """The codec in which bytes read most like words, and its name for people; Windows Latin for want of a better one."""
     foreign_words = [word for word in content.split() if not word.isascii()]
     sample = b" ".join(foreign_words)
     found: list[tuple[float, int, _Encoding]] = []
@@ -127,7 +135,7 @@ def guess_encoding(content: bytes) -> tuple[str, str]:
         expected = sum(map(encoding.is_expected, letters))
         if expected < 0.95 * len(letters) or (encoding in _SINGLE_BYTE and not _stand_together(text)):
             continue
-        frequent = sum(letter in encoding.frequent for letter in letters) / len(letters)
+        frequent = sum(letter in encoding.frequent for letter in letters) / max(1, len(letters))
         found.append((frequent, -order, encoding))
     if found and not _reads_as_latin(sample):
         best = max(found, key=lambda item: item[:2])[2]
@@ -138,8 +146,8 @@ def guess_encoding(content: bytes) -> tuple[str, str]:
 
 
 def _stand_together(text: str) -> bool:
-    """Whether foreign letters stand beside each other, as they do in a script of its own and not among Latin letters."""
-    pairs = list(zip(text, text[1:], strict=False))
+    """Whether foreign letters stand beside each other, as in a script of its own, and not among Latin letters."""
+    pairs = list(itertools.pairwise(text))
     mixed = sum(a.isascii() != b.isascii() and a.isalpha() and b.isalpha() for a, b in pairs)
     together = sum(not a.isascii() and not b.isascii() for a, b in pairs)
     return together > mixed
@@ -149,7 +157,7 @@ def _reads_as_latin(sample: bytes) -> bool:
     """Whether every accented letter stands beside a plain one and none beside another, as in European words."""
     text = sample.decode("cp1252", errors="replace")
     accented = [index for index, letter in enumerate(text) if not letter.isascii()]
-    if not all(text[index].isalpha() or text[index] in "°ºª´’" for index in accented):
+    if not all(text[index].isalpha() or text[index] in _LATIN_SIGNS for index in accented):
         return False
     neighbours = [text[max(index - 1, 0) : index] + text[index + 1 : index + 2] for index in accented]
     beside_plain = sum(any(letter.isascii() and letter.islower() for letter in around) for around in neighbours)

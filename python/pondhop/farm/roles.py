@@ -1,6 +1,6 @@
 """What each feature of a file is: a pond, the depot, an area to keep out of, or a thing that is none of these.
 
-A property ``role`` always wins. Else names, kinds, folders and styles are read, in this order, for the words of `words`.
+A property ``role`` always wins. Else names, kinds, folders and styles are read, in this order, for words that tell.
 In doubt a feature is a fault that names it: a pond too few is told, a building too many would be flown to.
 """
 
@@ -256,7 +256,7 @@ def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None,
     yield from _tags(feature)
     for folder in reversed(feature.folders):
         meaning = _decided(folder, is_line=False)
-        # The only layer of a file holds the ponds, whatever it is called, unless it is said to be something to keep out of.
+        # The only layer of a file holds the ponds, whatever it is called, unless that is something to keep out of.
         if has_layers or meaning in {Meaning.NO_FLY, Meaning.FENCE, Meaning.BOUNDARY}:
             yield (None if meaning is Meaning.UNCERTAIN else meaning), repr(folder)
     if feature.style:
