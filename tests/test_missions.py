@@ -110,6 +110,7 @@ def test_every_written_file_reads_back_as_the_mission(tmp_path: Path, fleet: Fle
     paths = write_missions(tmp_path, make_plan(farm, fleet, [[0, 1, 2], [4, 3]]))
     assert {path.name for path in paths} == {
         *(f"drone-{drone}{suffix}" for drone in (1, 2) for suffix in (".plan", ".waypoints", ".param", ".params")),
+        *(f"drone-{drone}-4.7{suffix}" for drone in (1, 2) for suffix in (".param", ".params")),
         "README.txt",
     }
     assert set(tmp_path.iterdir()) == set(paths)
@@ -152,7 +153,7 @@ def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:
     write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]]))
     first, second = (parameters(tmp_path / f"drone-{drone}.param") for drone in (1, 2))
     assert (first["RTL_ALT"], second["RTL_ALT"]) == (1500, 2000)
-    assert (first["WPNAV_SPEED"], first["WP_SPD"], first["RTL_SPEED"]) == (600, 6, 1000)
+    assert (first["WPNAV_SPEED"], first["RTL_SPEED"]) == (600, 1000)
     assert first["MIS_OPTIONS"] == 4
     # Twice the stay and half a minute: a pause on the water begins the stay anew.
     assert first["DISARM_DELAY"] == 70
@@ -164,7 +165,43 @@ def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:
     # QGroundControl: the same values in five columns.
     rows = [line.split("\t") for line in (tmp_path / "drone-1.params").read_text().splitlines() if line[0] != "#"]
     assert {row[2]: float(row[3]) for row in rows} == first
-    assert all(len(row) == 5 and row[:2] == ["1", "1"] and row[4] in {"6", "9"} for row in rows)
+    assert all(len(row) == 5 and row[:2] == ["1", "1"] for row in rows)
+    # MAV_PARAM_TYPE as ArduPilot stores them: AP_Int8 2, AP_Int16 4, AP_Int32 6, AP_Float 9.
+    assert {row[2]: int(row[4]) for row in rows} == {
+        "WPNAV_SPEED": 9,
+        "RTL_ALT": 6,
+        "RTL_SPEED": 4,
+        "RTL_LOIT_TIME": 6,
+        "MIS_OPTIONS": 4,
+        "DISARM_DELAY": 2,
+        "FENCE_TYPE": 2,
+        "FENCE_RADIUS": 9,
+        "FENCE_ALT_MAX": 9,
+        "FENCE_ENABLE": 2,
+        "BATT_FS_LOW_ACT": 2,
+        "FS_GCS_ENABLE": 2,
+    }
+
+
+def test_no_parameter_file_mixes_centimetres_and_metres(tmp_path: Path) -> None:
+    # QGroundControl sets RTL_ALT where a file for 4.7 says RTL_ALT_M 15 and the drone is older: 15 cm.
+    write_missions(tmp_path, two_drones())
+    old, new = parameters(tmp_path / "drone-2.param"), parameters(tmp_path / "drone-2-4.7.param")
+    assert (old.pop("WPNAV_SPEED"), old.pop("RTL_ALT"), old.pop("RTL_SPEED")) == (500, 1800, 1000)
+    assert (new.pop("WP_SPD"), new.pop("RTL_ALT_M"), new.pop("RTL_SPEED_MS")) == (5, 18, 10)
+    assert old == new
+    rows = [line.split("\t") for line in (tmp_path / "drone-2-4.7.params").read_text().splitlines() if line[0] != "#"]
+    assert {row[2] for row in rows} == {*new, "WP_SPD", "RTL_ALT_M", "RTL_SPEED_MS"}
+    text = " ".join((tmp_path / "README.txt").read_text().split())
+    assert "Copter from version 4.7: load drone-N-4.7.param or drone-N-4.7.params instead" in text
+    assert "RTL_ALT is RTL_ALT_M x 100" in text
+
+
+def test_ground_stations_find_a_name_and_a_value_a_line(tmp_path: Path) -> None:
+    write_missions(tmp_path, two_drones())
+    for path in tmp_path.glob("*.param"):
+        for line in path.read_text().splitlines():
+            assert line.startswith("#") or re.fullmatch(r"[A-Z][A-Z0-9_]{0,15},[0-9.]+", line), line
 
 
 def test_a_hover_dip_without_areas_is_told_only_what_it_needs(tmp_path: Path) -> None:
@@ -189,6 +226,7 @@ def test_the_readme_tells_what_a_crew_must_know(tmp_path: Path) -> None:
         "Start drone 1, then each drone 10 s after",
         "AUTO_OPTIONS 3",
         "Above 5 m/s no landing on a pond ends",
+        "Stand the drones at least 5 m apart",
     ):
         assert words in text, words
     write_missions(tmp_path, make_plan(make_farm(), Fleet(num_drones=2), [[0, 1, 2], [4, 3]]))
@@ -203,6 +241,8 @@ def test_missions_of_an_earlier_plan_are_removed(tmp_path: Path) -> None:
     write_missions(tmp_path, make_plan(make_farm(), Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "README.txt",
+        "drone-1-4.7.param",
+        "drone-1-4.7.params",
         "drone-1.param",
         "drone-1.params",
         "drone-1.plan",
@@ -293,6 +333,29 @@ def test_too_many_items_are_refused_for_every_drone(tmp_path: Path) -> None:
     assert not folder.exists()
     # One pond less fits: 3 items, 4 a pond, and home.
     assert check(build_mission(0, farm, fleet, list(range(161)))) == []
+    # 1300 items: 324 ponds, home, take-off, speed, way home. Two flights of 650 items sample 161 ponds each at most.
+    (rule,) = broken_rules(build_mission(0, farm, fleet, list(range(324))), ARDUPILOT)
+    assert (rule.kind, rule.value, rule.limit) == ("too_many_items", 1300, 650)
+    assert rule.fault.action == "share its ponds among 3 drones, or fly them in 3 flights"
+
+
+def test_as_many_items_as_the_autopilot_stores_are_flown() -> None:
+    mission = build(Fleet(1), [1])
+    first, *rest = mission.items
+    full = replace(mission, items=(first, *[mission.items[2]] * (649 - len(mission.items)), *rest))
+    assert len(full.items) + 1 == 650
+    assert check(full) == []
+    over = replace(mission, items=(first, mission.items[2], *full.items[1:]))
+    assert [rule.kind for rule in broken_rules(over, ARDUPILOT)] == ["too_many_items"]
+
+
+def test_files_hold_what_a_mission_needs_of_a_position(tmp_path: Path) -> None:
+    # 8 decimals of a degree are a millimetre; 6 are 11 cm.
+    farm = Farm("fine", (Pond("A", (-89.00012345, 37.00098765)),), DEPOT)
+    write_missions(tmp_path, make_plan(farm, Fleet(1), [[0]]))
+    assert "\t37.00098765\t-89.00012345\t" in (tmp_path / "drone-1.waypoints").read_text()
+    items = json.loads((tmp_path / "drone-1.plan").read_text())["mission"]["items"]
+    assert items[2]["params"][4:6] == [37.00098765, -89.00012345]
 
 
 def test_all_faults_of_all_missions_are_told_and_nothing_is_written(tmp_path: Path) -> None:

@@ -31,7 +31,14 @@ __all__ = ["README", "is_mission_file", "judged", "mission_texts", "obstacles", 
 
 README = "README.txt"
 
-_SUFFIXES = (*(mission_format.suffix for mission_format in FORMATS), MISSION_PLANNER_SUFFIX, QGROUNDCONTROL_SUFFIX)
+_SUFFIXES = (
+    *(mission_format.suffix for mission_format in FORMATS),
+    *(
+        f"{generation.tag}{suffix}"
+        for generation in ARDUPILOT.generations
+        for suffix in (MISSION_PLANNER_SUFFIX, QGROUNDCONTROL_SUFFIX)
+    ),
+)
 _MISSION_FILE = re.compile(rf"drone-[1-9][0-9]*({'|'.join(map(re.escape, _SUFFIXES))})")
 
 
@@ -94,10 +101,12 @@ def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
     for drone, mission in enumerate(missions):
         for mission_format in FORMATS:
             texts[f"{mission.name}{mission_format.suffix}"] = mission_format.checked_text(mission)
-        parameters = ARDUPILOT.parameters(farm_plan, drone)
-        title = f"{mission.name}: what {ARDUPILOT.name} Copter must be set to"
-        texts[f"{mission.name}{MISSION_PLANNER_SUFFIX}"] = mission_planner_parameters(title, parameters)
-        texts[f"{mission.name}{QGROUNDCONTROL_SUFFIX}"] = qgroundcontrol_parameters(title, parameters)
+        for generation in ARDUPILOT.generations:
+            parameters = [generation.spelled(parameter) for parameter in ARDUPILOT.parameters(farm_plan, drone)]
+            title = f"{mission.name}: what {ARDUPILOT.name} {generation.versions} must be set to"
+            stem = f"{mission.name}{generation.tag}"
+            texts[f"{stem}{MISSION_PLANNER_SUFFIX}"] = mission_planner_parameters(title, parameters)
+            texts[f"{stem}{QGROUNDCONTROL_SUFFIX}"] = qgroundcontrol_parameters(title, parameters)
     texts[README] = crew_readme(farm_plan, ARDUPILOT)
     return texts
 
@@ -111,7 +120,9 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
         Its own ``obstacles`` are passed over.
     """
     broken = [
-        FarmViolation(rule.kind, _message(rule.fault, mission), rule.fault.action, drone=drone)
+        FarmViolation(
+            rule.kind, _message(rule.fault, mission), rule.fault.action, drone, value=rule.value, limit=rule.limit
+        )
         for drone, mission in enumerate(_missions(farm_plan), start=1)
         for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
     ]

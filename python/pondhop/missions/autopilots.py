@@ -6,8 +6,8 @@ Sources: ArduPilot's parameter reference, and flights on a simulated ArduCopter 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,7 +15,8 @@ import numpy as np
 from pondhop._core import LocalFrame
 from pondhop.solution import FarmPlan
 
-Kind = Literal["integer", "real"]
+Kind = Literal["int8", "int16", "int32", "real"]
+"""How an autopilot stores a parameter; QGroundControl may pass over one that a file gives another kind."""
 
 CEILING_MARGIN_M = 15.0
 """How far above the highest flight a fence's ceiling is set: the autopilot keeps a margin below it, and gusts lift."""
@@ -47,7 +48,33 @@ class Parameter:
     name: str
     value: float
     why: str
-    kind: Kind = "integer"
+    kind: Kind
+
+
+@dataclass(frozen=True)
+class Generation:
+    """Versions of an autopilot that share names and units of parameters.
+
+    Attributes
+    ----------
+    tag
+        In the names of its parameter files; empty for the first.
+    versions
+        For people.
+    renamed
+        Name in the first generation -> name and kind here, and what one of its units is in the units here.
+    """
+
+    tag: str
+    versions: str
+    renamed: Mapping[str, tuple[str, Kind, float]]
+
+    def spelled(self, parameter: Parameter) -> Parameter:
+        """Return a parameter of the first generation in the words of this one."""
+        if parameter.name not in self.renamed:
+            return parameter
+        name, kind, factor = self.renamed[parameter.name]
+        return replace(parameter, name=name, value=parameter.value * factor, kind=kind)
 
 
 @dataclass(frozen=True)
@@ -63,50 +90,51 @@ class Autopilot:
     max_hold_s
         The longest hold at a waypoint, in whole seconds.
     parameters
-        What a drone of a plan, from 0, must be set to.
+        What a drone of a plan, from 0, must be set to, in the words of the first generation.
+    generations
+        One set of parameter files each. No file mixes them: QGroundControl takes the new names for the old ones on a
+        drone of the first generation, and would set it to 15 cm in place of 15 m.
     """
 
     name: str
     max_num_items: int
     max_hold_s: int
     parameters: Callable[[FarmPlan, int], list[Parameter]]
+    generations: tuple[Generation, ...]
 
 
 def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
     fleet, farm = farm_plan.fleet, farm_plan.farm
-    speed, return_speed = fleet.speed_m_s, fleet.return_speed_m_s
     return_height_m = fleet.return_height_of(drone)
     speed_why = "a pause in flight forgets the speed of the mission and takes this one"
     home_why = "drones come home in layers, so that they do not meet"
     found = [
-        Parameter("WPNAV_SPEED", round(100 * speed), speed_why + " (cm/s, to version 4.6)", "real"),
-        Parameter("WP_SPD", speed, speed_why + " (m/s, from version 4.7)", "real"),
-        Parameter("RTL_ALT", round(100 * return_height_m), home_why + " (cm, to version 4.6)"),
-        Parameter("RTL_ALT_M", return_height_m, home_why + " (m, from version 4.7)", "real"),
-        Parameter("RTL_SPEED", round(100 * return_speed), "the plan counts with it (cm/s, to version 4.6)"),
-        Parameter("RTL_SPEED_MS", return_speed, "the plan counts with it (m/s, from version 4.7)", "real"),
-        Parameter("RTL_LOIT_TIME", round(1000 * fleet.return_loiter_s), "the plan counts with it (ms)"),
+        Parameter("WPNAV_SPEED", round(100 * fleet.speed_m_s), speed_why, "real"),
+        Parameter("RTL_ALT", round(100 * return_height_m), home_why, "int32"),
+        Parameter("RTL_SPEED", round(100 * fleet.return_speed_m_s), "the plan counts with it on the way home", "int16"),
+        Parameter("RTL_LOIT_TIME", round(1000 * fleet.return_loiter_s), "the plan counts with it (ms)", "int32"),
     ]
     if fleet.sampling == "splashdown":
         stays_s = 2 * fleet.dwell_s + 30
         delay_s = math.ceil(stays_s) if stays_s <= MAX_DISARM_DELAY_S else 0
         found += [
-            Parameter("MIS_OPTIONS", 4, "bit 2: without it a drone ends its mission on the first pond; add other bits"),
-            Parameter("DISARM_DELAY", delay_s, "with less, a drone disarms on a pond before its stay is over"),
+            Parameter("MIS_OPTIONS", 4, "bit 2: without it a drone ends on the first pond; add other bits", "int16"),
+            Parameter("DISARM_DELAY", delay_s, "with less, a drone disarms on a pond before its stay is over", "int8"),
         ]
     ceiling_m = max(return_height_m, fleet.way_out_height_of(drone)) + CEILING_MARGIN_M
     reach_m = _reach_m(farm_plan, drone) + RADIUS_MARGIN_M
     fence_why = "altitude, circle and polygons; a radius or ceiling left at its default ends the round on the way"
     found += [
-        Parameter("FENCE_TYPE", 7, fence_why),
+        Parameter("FENCE_TYPE", 7, fence_why, "int8"),
         Parameter("FENCE_RADIUS", math.ceil(reach_m), "the farthest pond of this drone and some more (m)", "real"),
         Parameter("FENCE_ALT_MAX", math.ceil(ceiling_m), "the highest flight of this drone and some more (m)", "real"),
     ]
     if farm.fences or farm.no_fly:
-        found.append(Parameter("FENCE_ENABLE", 1, "the farm has fences or no-fly zones; only .plan files hold them"))
+        why = "the farm has fences or no-fly zones; only .plan files hold them"
+        found.append(Parameter("FENCE_ENABLE", 1, why, "int8"))
     found += [
-        Parameter("BATT_FS_LOW_ACT", 2, "come home on a low battery; the default, 0, does nothing"),
-        Parameter("FS_GCS_ENABLE", 1, "come home when the ground station is lost; the default, 0, does nothing"),
+        Parameter("BATT_FS_LOW_ACT", 2, "come home on a low battery; the default, 0, does nothing", "int8"),
+        Parameter("FS_GCS_ENABLE", 1, "come home without a ground station; the default, 0, does nothing", "int8"),
     ]
     return found
 
@@ -118,5 +146,22 @@ def _reach_m(farm_plan: FarmPlan, drone: int) -> float:
     return float(np.hypot(*local.T).max())
 
 
-ARDUPILOT = Autopilot("ArduPilot", max_num_items=650, max_hold_s=65_535, parameters=_ardupilot_parameters)
+ARDUPILOT = Autopilot(
+    "ArduPilot",
+    max_num_items=650,
+    max_hold_s=65_535,
+    parameters=_ardupilot_parameters,
+    generations=(
+        Generation("", "Copter to version 4.6", {}),
+        Generation(
+            "-4.7",
+            "Copter from version 4.7",
+            {
+                "WPNAV_SPEED": ("WP_SPD", "real", 0.01),
+                "RTL_ALT": ("RTL_ALT_M", "real", 0.01),
+                "RTL_SPEED": ("RTL_SPEED_MS", "real", 0.01),
+            },
+        ),
+    ),
+)
 """ArduPilot Copter: 650 items on its smaller boards; a hold is kept as whole seconds in 16 bits."""

@@ -32,10 +32,14 @@ class BrokenRule:
         ``too_many_items``, ``outside_fence``, ``crosses_no_fly``, or ``mission`` for what only a bug brings about.
     fault
         Place, what is wrong, remedy.
+    value, limit
+        The number of items, and how many the autopilot stores; of legs that break an area's rule, and of all legs.
     """
 
     kind: str
     fault: Fault
+    value: float | None = None
+    limit: float | None = None
 
 
 def broken_rules(mission: Mission, autopilot: Autopilot, *, margin_m: float = 0.0) -> list[BrokenRule]:
@@ -57,10 +61,10 @@ def broken_rules(mission: Mission, autopilot: Autopilot, *, margin_m: float = 0.
     faults = [*_value_faults(mission, autopilot), *_order_faults(mission)]
     positions = list(_position_faults(mission))
     rules = [BrokenRule("mission", fault) for fault in positions + faults]
-    rules += [BrokenRule("too_many_items", fault) for fault in _size_faults(mission, autopilot)]
+    rules += _size_rules(mission, autopilot)
     # Geometry with a latitude of 137 or NaN has no meaning.
     if not positions:
-        rules += [BrokenRule(kind, fault) for kind, fault in _area_faults(mission, margin_m)]
+        rules += _area_rules(mission, margin_m)
     return rules
 
 
@@ -114,19 +118,29 @@ def _order_faults(mission: Mission) -> Iterator[Fault]:
             yield Fault(_place(mission, index), "the drone lands and does not take off again", action_text)
 
 
-def _size_faults(mission: Mission, autopilot: Autopilot) -> Iterator[Fault]:
-    num_items = len(mission.items) + 1
-    if num_items > autopilot.max_num_items:
-        num_flights = math.ceil(num_items / autopilot.max_num_items)
-        yield Fault(
+def _size_rules(mission: Mission, autopilot: Autopilot) -> Iterator[BrokenRule]:
+    num_items, most = len(mission.items) + 1, autopilot.max_num_items
+    if num_items > most:
+        num_flights = _num_flights(mission, most)
+        fault = Fault(
             mission.name,
-            f"it has {num_items} items with home, {autopilot.name} stores {autopilot.max_num_items}",
+            f"it has {num_items} items with home, {autopilot.name} stores {most}",
             f"share its ponds among {num_flights} drones, or fly them in {num_flights} flights",
         )
+        yield BrokenRule("too_many_items", fault, num_items, most)
 
 
-def _area_faults(mission: Mission, margin_m: float) -> Iterator[tuple[str, Fault]]:
-    """Legs and home that are outside a fence, or inside a no-fly zone, by the margin; one fault an area."""
+def _num_flights(mission: Mission, max_num_items: int) -> int:
+    """How many missions of at most so many items sample the ponds of one: each takes off and comes home again."""
+    ponds = [item.pond_id for item in mission.items if item.pond_id is not None]
+    num_ponds = max(1, len(set(ponds)))
+    per_pond = max(1, len(ponds) // num_ponds)
+    around = len(mission.items) + 1 - num_ponds * per_pond
+    return math.ceil(num_ponds / max(1, (max_num_items - around) // per_pond))
+
+
+def _area_rules(mission: Mission, margin_m: float) -> Iterator[BrokenRule]:
+    """Legs and home that are outside a fence, or inside a no-fly zone, by the margin; one broken rule an area."""
     if not mission.fences and not mission.no_fly:
         return
     import shapely
@@ -144,7 +158,8 @@ def _area_faults(mission: Mission, margin_m: float) -> Iterator[tuple[str, Fault
         place = f"{mission.name}, {area}"
         polygon = shapely.Polygon(local(ring)) if len(ring) >= 3 else shapely.Polygon()
         if polygon.is_empty or not polygon.is_valid:
-            yield "mission", Fault(place, "it is no simple polygon", "draw it so that it does not cross itself")
+            fault = Fault(place, "it is no simple polygon", "draw it so that it does not cross itself")
+            yield BrokenRule("mission", fault)
             continue
         is_near = shapely.distance(polygon.exterior, flown) < margin_m
         is_inside = shapely.covers(polygon, flown)
@@ -155,7 +170,7 @@ def _area_faults(mission: Mission, margin_m: float) -> Iterator[tuple[str, Fault
             side = "inside" if kind == "outside_fence" else "outside"
             room = f"by at least {margin_m:g} m " if margin_m > 0 else ""
             message = f"{len(broken)} of {len(flown)} legs are not {side} it {room}({told})"
-            yield kind, Fault(place, message, _AREA_REMEDY)
+            yield BrokenRule(kind, Fault(place, message, _AREA_REMEDY), len(broken), len(flown))
 
 
 def _legs(mission: Mission) -> tuple[list[str], list[tuple[LonLat, LonLat]]]:

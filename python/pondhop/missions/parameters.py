@@ -13,8 +13,8 @@ from pondhop.missions.autopilots import Parameter
 
 MISSION_PLANNER_SUFFIX, QGROUNDCONTROL_SUFFIX = ".param", ".params"
 
-_TYPES = {"integer": 6, "real": 9}
-"""``MAV_PARAM_TYPE``: INT32 and REAL32. QGroundControl asks the drone for the type that it stores."""
+_TYPES = {"int8": 2, "int16": 4, "int32": 6, "real": 9}
+"""``MAV_PARAM_TYPE``. QGroundControl passes over a parameter whose type is not the one that the drone stores."""
 
 _VEHICLE, _COMPONENT = 1, 1
 

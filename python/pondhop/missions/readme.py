@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from textwrap import fill
 
-from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot
+from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation
 from pondhop.missions.formats import FORMATS
 from pondhop.solution import FarmPlan
 from pondhop.units import clock_text, counted, duration_text, energy_text, height_text, length_text, speed_text
 
 _WIDTH = 88
+
+STANDS_APART_M = 5.0
+"""Between two drones at the depot: positions are known to 1 or 2 m."""
 
 
 def crew_readme(farm_plan: FarmPlan, autopilot: Autopilot) -> str:
@@ -63,20 +66,30 @@ def _battery(farm_plan: FarmPlan) -> str:
 def _settings(farm_plan: FarmPlan, autopilot: Autopilot) -> list[str]:
     return [
         "Each drone has parameters of its own: load drone-N.param with Mission Planner, or drone-N.params with "
-        "QGroundControl, into drone N and no other. A name that the drone does not know belongs to another version of "
-        "its firmware.",
-        "For drone-1:",
+        "QGroundControl, into drone N and no other.",
+        *(
+            f"{generation.versions}: load drone-N{generation.tag}.param or drone-N{generation.tag}.params instead, and "
+            f"never into an older version: {_renamed(generation)}."
+            for generation in autopilot.generations[1:]
+        ),
+        f"Then read what the drone holds and compare. For drone-1, {autopilot.generations[0].versions}:",
         *(f"  {found.name} {found.value:g}: {found.why}" for found in autopilot.parameters(farm_plan, 0)),
         "WARNING: with the defaults of ArduPilot nothing happens when a battery runs low (BATT_FS_LOW_ACT 0) or the "
         "ground station is lost (FS_GCS_ENABLE 0). Set BATT_LOW_VOLT and BATT_LOW_MAH for your battery, or "
-        "BATT_FS_LOW_ACT never acts.",
+        "BATT_FS_LOW_ACT never acts. "
+        "BATT_FS_CRT_ACT 1 lands where the drone is, maybe on a pond: choose it yourself.",
     ]
+
+
+def _renamed(generation: Generation) -> str:
+    return ", ".join(f"{old} is {new} x {1 / factor:g}" for old, (new, _, factor) in generation.renamed.items())
 
 
 def _start(farm_plan: FarmPlan) -> list[str]:
     files = ", ".join(f"drone-N{mission_format.suffix} with {mission_format.name}" for mission_format in FORMATS)
     return [
         f"Load {files}: the same mission, but only .plan holds the fence and the no-fly zones.",
+        f"Stand the drones at least {STANDS_APART_M:g} m apart: each comes home to where it was armed.",
         f"Start drone 1, then each drone {farm_plan.fleet.takeoff_interval_s:g} s after the one before it, in the "
         "order of their numbers.",
         "QGroundControl: slide Start Mission. Mission Planner: Actions, Mission Start. From a transmitter: arm, switch "
