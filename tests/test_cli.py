@@ -156,7 +156,8 @@ def test_plan_writes_everything_a_crew_needs(run: Run, tmp_path: Path) -> None:
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written == {"plan.json", "plan.geojson", "missions"}
     missions = {path.name for path in (tmp_path / "out" / "missions").iterdir()}
-    drones = {f"drone-{drone}.{kind}" for drone in (1, 2, 3) for kind in ("plan", "waypoints", "param", "params")}
+    kinds = (".plan", ".waypoints", ".param", ".params", "-4.7.param", "-4.7.params")
+    drones = {f"drone-{drone}{kind}" for drone in (1, 2, 3) for kind in kinds}
     assert missions == drones | {"README.txt"}
 
 

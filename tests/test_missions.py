@@ -197,6 +197,16 @@ def test_no_parameter_file_mixes_centimetres_and_metres(tmp_path: Path) -> None:
     assert "RTL_ALT is RTL_ALT_M x 100" in text
 
 
+def test_vertical_speeds_of_the_fleet_are_set_on_the_drones(tmp_path: Path) -> None:
+    fleet = Fleet(1, climb_speed_m_s=2.0, landing_speed_m_s=0.3, slow_landing_height_m=5.0)
+    write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2, 3, 4]]))
+    old, new = parameters(tmp_path / "drone-1.param"), parameters(tmp_path / "drone-1-4.7.param")
+    assert (old["WPNAV_SPEED_UP"], old["LAND_SPEED"], old["LAND_ALT_LOW"]) == (200, 30, 500)
+    assert (new["WP_SPD_UP"], new["LAND_SPD_MS"], new["LAND_ALT_LOW_M"]) == (2, 0.3, 5)
+    # ArduPilot's own default stays as the crew has it.
+    assert "WPNAV_SPEED_DN" not in old
+
+
 def test_ground_stations_find_a_name_and_a_value_a_line(tmp_path: Path) -> None:
     write_missions(tmp_path, two_drones())
     for path in tmp_path.glob("*.param"):

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 
 from pondhop._core import LocalFrame
+from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan
 
 Kind = Literal["int8", "int16", "int32", "real"]
@@ -103,6 +104,18 @@ class Autopilot:
     generations: tuple[Generation, ...]
 
 
+_VERTICAL: tuple[tuple[str, str, Kind], ...] = (
+    ("climb_speed_m_s", "WPNAV_SPEED_UP", "real"),
+    ("descent_speed_m_s", "WPNAV_SPEED_DN", "real"),
+    ("landing_speed_m_s", "LAND_SPEED", "int16"),
+    ("slow_landing_height_m", "LAND_ALT_LOW", "int16"),
+)
+"""Settings whose defaults are ArduPilot's own: written only where the fleet has others.
+
+A drone that a crew lets land with more care keeps its speed where the fleet file does not speak of it.
+"""
+
+
 def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
     fleet, farm = farm_plan.fleet, farm_plan.farm
     return_height_m = fleet.return_height_of(drone)
@@ -113,6 +126,11 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
         Parameter("RTL_ALT", round(100 * return_height_m), home_why, "int32"),
         Parameter("RTL_SPEED", round(100 * fleet.return_speed_m_s), "the plan counts with it on the way home", "int16"),
         Parameter("RTL_LOIT_TIME", round(1000 * fleet.return_loiter_s), "the plan counts with it (ms)", "int32"),
+    ]
+    found += [
+        Parameter(name, round(100 * getattr(fleet, setting)), "the plan counts with it", kind)
+        for setting, name, kind in _VERTICAL
+        if getattr(fleet, setting) != getattr(Fleet, setting)
     ]
     if fleet.sampling == "splashdown":
         stays_s = 2 * fleet.dwell_s + 30
@@ -160,6 +178,10 @@ ARDUPILOT = Autopilot(
                 "WPNAV_SPEED": ("WP_SPD", "real", 0.01),
                 "RTL_ALT": ("RTL_ALT_M", "real", 0.01),
                 "RTL_SPEED": ("RTL_SPEED_MS", "real", 0.01),
+                "WPNAV_SPEED_UP": ("WP_SPD_UP", "real", 0.01),
+                "WPNAV_SPEED_DN": ("WP_SPD_DN", "real", 0.01),
+                "LAND_SPEED": ("LAND_SPD_MS", "real", 0.01),
+                "LAND_ALT_LOW": ("LAND_ALT_LOW_M", "real", 0.01),
             },
         ),
     ),

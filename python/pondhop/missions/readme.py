@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from textwrap import fill
 
-from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation
+from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation, Parameter
 from pondhop.missions.formats import FORMATS
 from pondhop.solution import FarmPlan
 from pondhop.units import clock_text, counted, duration_text, energy_text, height_text, length_text, speed_text
@@ -64,16 +64,17 @@ def _battery(farm_plan: FarmPlan) -> str:
 
 
 def _settings(farm_plan: FarmPlan, autopilot: Autopilot) -> list[str]:
+    parameters = autopilot.parameters(farm_plan, 0)
     return [
         "Each drone has parameters of its own: load drone-N.param with Mission Planner, or drone-N.params with "
         "QGroundControl, into drone N and no other.",
         *(
             f"{generation.versions}: load drone-N{generation.tag}.param or drone-N{generation.tag}.params instead, and "
-            f"never into an older version: {_renamed(generation)}."
+            f"never into an older version: {_renamed(generation, parameters)}."
             for generation in autopilot.generations[1:]
         ),
         f"Then read what the drone holds and compare. For drone-1, {autopilot.generations[0].versions}:",
-        *(f"  {found.name} {found.value:g}: {found.why}" for found in autopilot.parameters(farm_plan, 0)),
+        *(f"  {found.name} {found.value:g}: {found.why}" for found in parameters),
         "WARNING: with the defaults of ArduPilot nothing happens when a battery runs low (BATT_FS_LOW_ACT 0) or the "
         "ground station is lost (FS_GCS_ENABLE 0). Set BATT_LOW_VOLT and BATT_LOW_MAH for your battery, or "
         "BATT_FS_LOW_ACT never acts. "
@@ -81,8 +82,13 @@ def _settings(farm_plan: FarmPlan, autopilot: Autopilot) -> list[str]:
     ]
 
 
-def _renamed(generation: Generation) -> str:
-    return ", ".join(f"{old} is {new} x {1 / factor:g}" for old, (new, _, factor) in generation.renamed.items())
+def _renamed(generation: Generation, parameters: list[Parameter]) -> str:
+    found = [
+        (parameter.name, *generation.renamed[parameter.name])
+        for parameter in parameters
+        if parameter.name in generation.renamed
+    ]
+    return ", ".join(f"{old} is {new} x {1 / factor:g}" for old, new, _, factor in found)
 
 
 def _start(farm_plan: FarmPlan) -> list[str]:
