@@ -338,15 +338,19 @@ def test_too_many_items_are_refused_for_every_drone(tmp_path: Path) -> None:
         ("drone-1", "it has 652 items with home, ArduPilot stores 650"),
         ("drone-2", "it has 1357 items with home, ArduPilot stores 650"),
     ]
-    assert error.value.faults[0].action == "share its ponds among 2 drones, or fly them in 2 flights"
-    assert error.value.faults[1].action == "share its ponds among 3 drones, or fly them in 3 flights"
+    # 161 ponds a mission: 500 ponds are 4 missions.
+    flights = [(fault.action.partition(", or ")[0], fault.action.partition(", or ")[2]) for fault in error.value.faults]
+    assert flights == [
+        ("plan for at least 4 drones", "fly its ponds in 2 flights, at most 161 in each"),
+        ("plan for at least 4 drones", "fly its ponds in 3 flights, at most 161 in each"),
+    ]
     assert not folder.exists()
     # One pond less fits: 3 items, 4 a pond, and home.
     assert check(build_mission(0, farm, fleet, list(range(161)))) == []
     # 1300 items: 324 ponds, home, take-off, speed, way home. Two flights of 650 items sample 161 ponds each at most.
     (rule,) = broken_rules(build_mission(0, farm, fleet, list(range(324))), ARDUPILOT)
     assert (rule.kind, rule.value, rule.limit) == ("too_many_items", 1300, 650)
-    assert rule.fault.action == "share its ponds among 3 drones, or fly them in 3 flights"
+    assert rule.fault.action == "fly its ponds in 3 flights, at most 161 in each"
 
 
 def test_as_many_items_as_the_autopilot_stores_are_flown() -> None:

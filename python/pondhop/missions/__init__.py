@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from dataclasses import replace
@@ -15,7 +16,7 @@ from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import Farm, doubt_fault
 from pondhop.missions.autopilots import ARDUPILOT
-from pondhop.missions.check import broken_rules
+from pondhop.missions.check import BrokenRule, broken_rules, max_num_ponds
 from pondhop.missions.formats import FORMATS
 from pondhop.missions.mission import Mission, build_mission
 from pondhop.missions.parameters import (
@@ -121,7 +122,13 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
     """
     broken = [
         FarmViolation(
-            rule.kind, _message(rule.fault, mission), rule.fault.action, drone, value=rule.value, limit=rule.limit
+            rule.kind,
+            _message(rule.fault, mission),
+            _remedy(rule, mission, farm_plan),
+            drone,
+            None,
+            rule.value,
+            rule.limit,
         )
         for drone, mission in enumerate(_missions(farm_plan), start=1)
         for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
@@ -154,6 +161,14 @@ def _missions(farm_plan: FarmPlan) -> list[Mission]:
         build_mission(drone, farm_plan.farm, farm_plan.fleet, route)
         for drone, route in enumerate(farm_plan.solution.plan.routes)
     ]
+
+
+def _remedy(rule: BrokenRule, mission: Mission, farm_plan: FarmPlan) -> str:
+    if rule.kind != "too_many_items":
+        return rule.fault.action
+    num_drones = math.ceil(len(farm_plan.farm.ponds) / max_num_ponds(mission, ARDUPILOT))
+    # Ponds spread unevenly over drones: as few as there are now may be enough in sum, and yet too few.
+    return f"plan for at least {max(num_drones, farm_plan.fleet.num_drones + 1)} drones, or {rule.fault.action}"
 
 
 def _place(violation: FarmViolation) -> str:

@@ -121,22 +121,26 @@ def _order_faults(mission: Mission) -> Iterator[Fault]:
 def _size_rules(mission: Mission, autopilot: Autopilot) -> Iterator[BrokenRule]:
     num_items, most = len(mission.items) + 1, autopilot.max_num_items
     if num_items > most:
-        num_flights = _num_flights(mission, most)
+        most_ponds = max_num_ponds(mission, autopilot)
+        num_flights = math.ceil(_num_ponds(mission) / most_ponds)
         fault = Fault(
             mission.name,
             f"it has {num_items} items with home, {autopilot.name} stores {most}",
-            f"share its ponds among {num_flights} drones, or fly them in {num_flights} flights",
+            f"fly its ponds in {num_flights} flights, at most {most_ponds} in each",
         )
         yield BrokenRule("too_many_items", fault, num_items, most)
 
 
-def _num_flights(mission: Mission, max_num_items: int) -> int:
-    """How many missions of at most so many items sample the ponds of one: each takes off and comes home again."""
-    ponds = [item.pond_id for item in mission.items if item.pond_id is not None]
-    num_ponds = max(1, len(set(ponds)))
-    per_pond = max(1, len(ponds) // num_ponds)
+def max_num_ponds(mission: Mission, autopilot: Autopilot) -> int:
+    """Return how many ponds a mission like this one may sample: taking off and coming home need items too."""
+    num_ponds = _num_ponds(mission)
+    per_pond = max(1, sum(item.pond_id is not None for item in mission.items) // num_ponds)
     around = len(mission.items) + 1 - num_ponds * per_pond
-    return math.ceil(num_ponds / max(1, (max_num_items - around) // per_pond))
+    return max(1, (autopilot.max_num_items - around) // per_pond)
+
+
+def _num_ponds(mission: Mission) -> int:
+    return max(1, len({item.pond_id for item in mission.items if item.pond_id is not None}))
 
 
 def _area_rules(mission: Mission, margin_m: float) -> Iterator[BrokenRule]:
