@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from pondhop.errors import InvalidInput
 from pondhop.fleet import Fleet, read_fleet
+from pondhop.fleet.model import setting_faults
 from pondhop.fleet.settings import NUMBERS
 
 
@@ -152,3 +153,23 @@ def test_every_setting_has_a_range_and_a_source() -> None:
     for name in names:
         default = getattr(Fleet(1), name)
         assert default is None or NUMBERS[name].least <= default <= NUMBERS[name].most
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most"),
+    [
+        ("num_drones", 1, 10_000),
+        ("speed_m_s", 0.1, 50.0),
+        ("transit_height_m", 1.0, 121.9),
+        ("return_speed_m_s", 0.1, 50.0),
+        ("return_height_m", 1.0, 121.9),
+        ("dwell_s", 0.0, 3_600.0),
+        ("reserve_percent", 0.0, 95.0),
+        ("health_percent", 1.0, 100.0),
+    ],
+)
+def test_the_ranges_of_settings_end_where_they_are_said_to(name: str, least: float, most: float) -> None:
+    assert setting_faults({name: least}) == setting_faults({name: most}) == []
+    step = 1 if name == "num_drones" else 0.01
+    for beyond in (least - step, most + step):
+        assert [fault.path for fault in setting_faults({name: beyond})] == [name]
