@@ -67,7 +67,7 @@ class Breaks:
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()], ids=["full", "ctrl-c"])
-@pytest.mark.parametrize("after", range(9))
+@pytest.mark.parametrize("after", range(11))
 def test_a_failure_while_writing_leaves_the_old_plan(
     after: int, error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -75,8 +75,8 @@ def test_a_failure_while_writing_leaves_the_old_plan(
     outputs.write_outputs(folder, two_drones(), has_figure=False)
     before = contents(folder)
     monkeypatch.setattr(atomic, "_write", Breaks(atomic._write, after, error))
-    # A new plan of one drone has seven files.
-    if after < 7:
+    # A new plan of one drone has nine files.
+    if after < 9:
         with pytest.raises(type(error)):
             outputs.write_outputs(folder, one_drone(), has_figure=False)
         assert contents(folder) == before
@@ -86,7 +86,7 @@ def test_a_failure_while_writing_leaves_the_old_plan(
     assert not [path for path in folder.iterdir() if path.name.startswith(atomic.STAGING_PREFIX)]
 
 
-@pytest.mark.parametrize("after", range(18))
+@pytest.mark.parametrize("after", range(24))
 def test_a_failure_while_swapping_leaves_the_old_plan(
     after: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -102,7 +102,7 @@ def test_a_failure_while_swapping_leaves_the_old_plan(
         return rename(self, target)
 
     monkeypatch.setattr(Path, "rename", fail_once)
-    # Eleven old files go out, seven new ones come in.
+    # Fifteen old files go out, nine new ones come in.
     with pytest.raises(OSError, match="Input/output"):
         outputs.write_outputs(folder, one_drone(), has_figure=False)
     monkeypatch.undo()
