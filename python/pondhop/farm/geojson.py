@@ -1,4 +1,4 @@
-"""GeoJSON as features; parsed here, so that faults name their place in the file and the heavy packages stay unloaded."""
+"""GeoJSON as features; parsed here, so that faults name their place and heavy packages stay unloaded."""
 
 from __future__ import annotations
 

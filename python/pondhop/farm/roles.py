@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from pondhop.errors import Fault
-from pondhop.farm.features import Feature, Source, is_blank, listed, normal_name
+from pondhop.farm.features import Feature, Source, is_blank, listed, normal_name, present_columns
 from pondhop.farm.vocabulary import column_words
 from pondhop.farm.words import Meaning, is_unnamed, meanings
 
@@ -249,10 +249,10 @@ def _decided(text: str, *, is_line: bool) -> Meaning | None:
 
 def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None, str]]:
     """What kinds, map tags, folders and styles say, the nearest to the feature first."""
-    for column in _KIND_COLUMNS:
-        found = feature.find(column)
-        if found is not None and isinstance(found[1], str):
-            yield _decided(found[1], is_line=False), f"{found[0]} {found[1][:40]!r}"
+    for key in present_columns(tuple(feature.properties), _KIND_COLUMNS):
+        value = feature.properties[key]
+        if isinstance(value, str) and not is_blank(value):
+            yield _decided(value, is_line=False), f"{key} {value[:40]!r}"
     yield from _tags(feature)
     for folder in reversed(feature.folders):
         meaning = _decided(folder, is_line=False)
