@@ -61,7 +61,7 @@ def ponds(number: int = 3) -> list[dict[str, object]]:
     return [polygon(index % 3, index // 3, name=f"Pond {index + 1}") for index in range(number)]
 
 
-def geojson(folder: Path, *features: dict[str, object], **members: object) -> Path:
+def geojson(folder: Path, *features: Mapping[str, object], **members: object) -> Path:
     path = folder / "farm.geojson"
     path.write_text(json.dumps({"type": "FeatureCollection", **members, "features": list(features)}), "utf-8")
     return path
@@ -319,7 +319,9 @@ def test_tags_of_openstreetmap_tell_buildings_and_roads(tmp_path: Path) -> None:
 
 
 def test_an_outline_around_other_ponds_is_a_fault_whatever_its_name(tmp_path: Path) -> None:
-    around = shape("Polygon", [[[105.69, 10.09], [105.72, 10.09], [105.72, 10.12], [105.69, 10.12], [105.69, 10.09]]])
+    around: dict[str, object] = shape(
+        "Polygon", [[[105.69, 10.09], [105.72, 10.09], [105.72, 10.12], [105.69, 10.12], [105.69, 10.09]]]
+    )
     for name in ("Sunrise Aqua", "Pond area", ""):
         around["properties"] = {"name": name}
         [(place, message, _)] = faults_of(geojson(tmp_path, around, *ponds(6)), depot=DEPOT)
@@ -398,7 +400,8 @@ def test_the_column_that_tells_ponds_apart_names_them(tmp_path: Path) -> None:
 
 def test_equal_numbers_in_two_folders_get_the_folder(tmp_path: Path) -> None:
     folders = "".join(
-        f"<Folder><name>{folder}</name>{placemark('1', kml_polygon(column, 0))}{placemark('2', kml_polygon(column, 1))}</Folder>"
+        f"<Folder><name>{folder}</name>{placemark('1', kml_polygon(column, 0))}"
+        f"{placemark('2', kml_polygon(column, 1))}</Folder>"
         for column, folder in enumerate(("North", "South"))
     )
     assert ids(read_farm(kml(tmp_path, folders), depot=DEPOT)) == ["North 1", "North 2", "South 1", "South 2"]
@@ -580,7 +583,8 @@ def test_pipes_devices_and_links_to_other_files_are_not_opened(tmp_path: Path) -
     other = tmp_path / "secret.csv"
     other.write_text("name,lat,lon\nA,10.1,105.7\n")
     (tmp_path / "farm.vrt").write_text(
-        f'<OGRVRTDataSource><OGRVRTLayer name="secret"><SrcDataSource>{other}</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>'
+        f'<OGRVRTDataSource><OGRVRTLayer name="secret"><SrcDataSource>{other}</SrcDataSource>'
+        "</OGRVRTLayer></OGRVRTDataSource>"
     )
     assert "known format" in faults_of(tmp_path / "farm.vrt")[0][1]
     with (tmp_path / "large.geojson").open("wb") as file:
@@ -603,7 +607,8 @@ def test_kml_as_map_programs_write_it(tmp_path: Path) -> None:
     ]
     assert ids(read_farm(kml(tmp_path, *parts))) == ["A", "Pond B", "C"]
     declared = tmp_path / "latin.kml"
-    text = f'<?xml version="1.0" encoding="ISO-8859-1"?><kml><Document>{placemark("Südteich", kml_polygon(0, 0))}</Document></kml>'
+    document = f"<kml><Document>{placemark('Südteich', kml_polygon(0, 0))}</Document></kml>"
+    text = f'<?xml version="1.0" encoding="ISO-8859-1"?>{document}'
     declared.write_bytes(text.encode("latin-1"))
     assert ids(read_farm(declared, depot=DEPOT)) == ["Südteich"]
 

@@ -47,7 +47,8 @@ def ponds_of_one_farm(
             left_out.update(group)
             ids = ", ".join(drafts[index].id for index in group[:5]) + (", ..." if len(group) > 5 else "")
             source.notes.add(
-                f"{len(group)} ponds ({ids}) lie {_km(centre, points[group[0]])} km from the depot: another farm, left out."
+                f"{len(group)} ponds ({ids}) lie {_km(centre, points[group[0]])} km from the depot: "
+                "another farm, left out."
             )
         elif len(group) == 1 or depot is not None:
             source.faults.extend(_far_ponds([drafts[index] for index in group], centre))
