@@ -443,6 +443,9 @@ EXPECTED = pytest.approx((105.7009, 10.1004), abs=1e-4)
         "name,utm_e,utm_n,zona\nA,576800,1116600,48 P\n",
         "name,x,y,zone\nA,576800.0,1116600.0,48 north\n",
         'name,easting,northing,utm zone\nA,"576,800","1,116,600",WGS84 UTM 48N\n',
+        'name,coordinates\nA,"10.1004, 105.7009"\n',
+        "塘号;坐标\nA;10.1004,105.7009\n",
+        "name;Este;Norte;Huso\nA;576.800,5;1.116.600,2;48N\n",
         '"WKT","name"\n"POINT (105.7009 10.1004)","A"\n',
     ],
 )

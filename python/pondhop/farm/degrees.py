@@ -58,7 +58,7 @@ def metres(text: str) -> float | None:
     plain = re.sub(r"\s*m(?:etres|eters)?$", "", plain, flags=re.IGNORECASE)
     if re.fullmatch(r"[+-]?\d{1,3}(?:,\d{3})+(?:\.\d+)?", plain):
         plain = plain.replace(",", "")
-    elif re.fullmatch(r"[+-]?\d{1,3}(?:\.\d{3}){2,}(?:,\d+)?", plain):
+    elif re.fullmatch(r"[+-]?\d{1,3}(?:(?:\.\d{3}){2,}(?:,\d+)?|\.\d{3},\d+)", plain):
         plain = plain.replace(".", "").replace(",", ".")
     return plain_number(plain)
 
