@@ -289,7 +289,9 @@ def test_a_written_farm_is_read_back_equal(tmp_path_factory: pytest.TempPathFact
     path = tmp_path_factory.mktemp("farms") / "farm.geojson"
     write_farm(path, farm)
     read = read_farm(path)
-    assert read == Farm(farm.name, farm.ponds, farm.depot, farm.stations, farm.no_fly, farm.fences, read.notes)
+    assert read == Farm(
+        farm.name, farm.ponds, farm.depot, farm.stations, farm.no_fly, farm.fences, read.notes, read.doubts
+    )
 
 
 # ---------------------------------------------------------------------------------------- GeoJSON as people write it

@@ -42,6 +42,7 @@ _CORNERS = {
 _EASTING = _any_of(*column_words("easting"))
 _NORTHING = _any_of(*column_words("northing"))
 _ZONE = _any_of(*column_words("zone"))
+_PAIR = _any_of(*column_words("pair"))
 _LAT_SIDE = _any_of(*column_words("side_of_latitude"))
 _LON_SIDE = _any_of(*column_words("side_of_longitude"))
 
@@ -66,6 +67,8 @@ class Columns:
         What a heading such as ``Lat (S)`` says about positive numbers.
     zone
         The column with the zone of UTM; then `corners` are easting and northing.
+    pair
+        A column that holds latitude and longitude, as map programs copy them.
     """
 
     names: tuple[str, ...]
@@ -75,11 +78,12 @@ class Columns:
     sides: dict[Axis, int] = field(default_factory=dict)
     signs: dict[Axis, int] = field(default_factory=dict)
     zone: int | None = None
+    pair: int | None = None
 
     def used(self) -> set[int]:
         """Indices of the columns that tell where a pond is."""
         found = {index for pair in self.corners for index in pair} | set(self.sides.values())
-        return found | {index for index in (self.wkt, self.zone) if index is not None}
+        return found | {index for index in (self.wkt, self.zone, self.pair) if index is not None}
 
 
 def _axis(name: str) -> tuple[Axis, str, int] | None:
@@ -139,6 +143,9 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
         found[axis, corner] = index
         if sign < 0:
             signs[axis] = sign
+    pair = _pair_column(plain, rows) if not found and wkt is None else None
+    if pair is not None:
+        return Columns(names, pair=pair)
     zone = next((index for index, name in enumerate(plain) if re.fullmatch(_ZONE, name)), None)
     eastings = [index for index, name in enumerate(plain) if re.fullmatch(_EASTING, name)]
     northings = [index for index, name in enumerate(plain) if re.fullmatch(_NORTHING, name)]
@@ -153,13 +160,33 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
         seen = "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {shown}"
         action = HEADER_ACTION
         if eastings and northings:
-            pair = f"{names[eastings[0]]} and {names[northings[0]]}"
-            action = f"add a column zone, as in 48N, for the {pair} of UTM; or {action}"
+            of_utm = f"{names[eastings[0]]} and {names[northings[0]]}"
+            action = f"add a column zone, as in 48N, for the {of_utm} of UTM; or {action}"
         source.faults.append(Fault(place, f"no longitude and latitude columns; the first line has {seen}", action))
         return None
     if not found or (wkt is not None and ("lon", "") not in found):
         return Columns(names, (), wkt)
     return _with_corners(names, found, _sides(plain, rows, found), signs, place, source)
+
+
+def _pair_column(plain: Sequence[str], rows: Sequence[Sequence[str]]) -> int | None:
+    """The column of coordinates, latitude first, whose name says so and whose cells all hold two numbers."""
+    for index, name in enumerate(plain):
+        cells = [row[index] for row in rows if index < len(row) and row[index].strip()]
+        is_named = re.fullmatch(_PAIR, name) is not None
+        if is_named and cells and all(len(parted_pair(cell)) == 2 for cell in cells):
+            return index
+    return None
+
+
+def parted_pair(cell: str) -> list[str]:
+    """The two coordinates of a cell such as ``10.1004, 105.7009``."""
+    text = cell.strip().strip("()[]")
+    for separator in (";", ", ", ",", " "):
+        parts = [part.strip() for part in text.split(separator) if part.strip()]
+        if len(parts) == 2:
+            return parts
+    return []
 
 
 def _is_beyond_degrees(row: Sequence[str], index: int) -> bool:

@@ -30,7 +30,8 @@ _HEMISPHERES = {word: _SIDES[side] for side, words in hemisphere_words().items()
 
 _LETTERS = "|".join(sorted(map(re.escape, _HEMISPHERES), key=len, reverse=True))
 _SIGNED = re.compile(
-    rf"(?P<before>{_LETTERS})?\s*(?P<sign>[+-])?\s*(?P<angle>\d[^A-Za-z]*?(?:d[^A-Za-z]+(?:m[^A-Za-z]*(?:s[^A-Za-z]*)?)?)?)\s*"
+    rf"(?P<before>{_LETTERS})?\s*(?P<sign>[+-])?\s*"
+    r"(?P<angle>\d[^A-Za-z]*?(?:d[^A-Za-z]+(?:m[^A-Za-z]*(?:s[^A-Za-z]*)?)?)?)\s*"
     rf"(?P<after>{_LETTERS})?\.?",
     re.IGNORECASE,
 )
@@ -57,7 +58,7 @@ def metres(text: str) -> float | None:
     plain = re.sub(r"\s*m(?:etres|eters)?$", "", plain, flags=re.IGNORECASE)
     if re.fullmatch(r"[+-]?\d{1,3}(?:,\d{3})+(?:\.\d+)?", plain):
         plain = plain.replace(",", "")
-    elif re.fullmatch(r"[+-]?\d{1,3}(?:\.\d{3}){2,}(?:,\d+)?", plain):
+    elif re.fullmatch(r"[+-]?\d{1,3}(?:(?:\.\d{3}){2,}(?:,\d+)?|\.\d{3},\d+)", plain):
         plain = plain.replace(".", "").replace(",", ".")
     return plain_number(plain)
 

@@ -1,4 +1,4 @@
-"""Where drones start: the depot of the file or the one that was given, and dry places to propose where there is none."""
+"""Where drones start: the depot of the file or the one that was given, and dry places where there is none."""
 
 from __future__ import annotations
 
@@ -85,14 +85,16 @@ def tell_depot_in_water(depot: LonLat, drafts: Sequence[Draft], source: Source) 
 
 
 def missing_depot(groups: Sequence[Sequence[int]], drafts: Sequence[Draft], starts: Sequence[Feature]) -> Fault:
-    """The fault that there is no depot, with what may be one: places with such names, and dry places beside the ponds."""
+    """The fault that there is no depot, with what may be one: places with such names, dry places beside ponds."""
     told: list[str] = []
     for feature in starts[:3]:
         if feature.geometry.points:
             lon, lat = feature.geometry.points[0]
             told.append(f"{shortened(feature.name)!r} lies at {lon:.6f},{lat:.6f}")
     for group in groups:
-        lon, lat = dry_place(middle([drafts[index].point() for index in group]), [drafts[index] for index in group])
+        lon, lat = dry_place(
+            middle([drafts[index].sampling_point for index in group]), [drafts[index] for index in group]
+        )
         ponds = "1 pond lies" if len(group) == 1 else f"{len(group)} ponds lie"
         told.append(f"{ponds} around {lon:.6f},{lat:.6f}")
     action = f"pass --depot LON,LAT, or name a point Depot{': ' if told else ''}{'; '.join(told)}"
@@ -108,12 +110,12 @@ def dry_place(wanted: LonLat, drafts: Sequence[Draft]) -> LonLat:
 
     frame = LocalFrame(*wanted)
     water = []
-    reach_m = _reach_m([draft.point() for draft in drafts], frame)
+    reach_m = _reach_m([draft.sampling_point for draft in drafts], frame)
     for draft, radius_m in zip(drafts, reach_m, strict=True):
         if draft.outline:
             water.append(shapely.Polygon(frame.to_local(np.array(draft.outline[0], dtype=np.float64))))
         else:
-            water.append(shapely.Point(frame.to_local(np.array([draft.point()]))[0]).buffer(radius_m))
+            water.append(shapely.Point(frame.to_local(np.array([draft.sampling_point]))[0]).buffer(radius_m))
     tree = shapely.STRtree(water)
     radius_m, furthest_m = (
         0.0,
@@ -140,8 +142,12 @@ def _reach_m(points: Sequence[LonLat], frame: LocalFrame) -> list[float]:
         return [POINT_POND_M] * len(points)
     places = shapely.points(frame.to_local(np.array(points, dtype=np.float64)))
     tree = shapely.STRtree(np.asarray(places))
-    _, distances = tree.query_nearest(places, exclusive=True, all_matches=False, return_distance=True)
-    return [min(POINT_POND_M, float(distance) / 2.0) for distance in distances]
+    reach_m = [POINT_POND_M] * len(points)
+    # Places on one spot are no neighbours of each other.
+    (indices, _), distances = tree.query_nearest(places, exclusive=True, all_matches=False, return_distance=True)
+    for index, distance in zip(indices, distances, strict=True):
+        reach_m[int(index)] = min(POINT_POND_M, float(distance) / 2.0)
+    return reach_m
 
 
 def away_km(depot: LonLat, points: Sequence[LonLat]) -> float:

@@ -26,7 +26,7 @@ def ponds_of_one_farm(
     A single pond far from all others is mistyped. Several together far away are another farm: with a depot from the
     user, who thereby says which farm is meant, they are left out with a note; else they are faults.
     """
-    points = [draft.point() for draft in drafts]
+    points = [draft.sampling_point for draft in drafts]
     groups = neighbourhoods(points if depot is None else [*points, depot])
     main = groups[0] if groups else []
     if depot is not None:
@@ -47,7 +47,7 @@ def ponds_of_one_farm(
             left_out.update(group)
             ids = ", ".join(drafts[index].id for index in group[:5]) + (", ..." if len(group) > 5 else "")
             source.notes.add(
-                f"{len(group)} ponds ({ids}) lie {distance_m(centre, points[group[0]]) / 1000.0:.0f} km from the depot: "
+                f"{len(group)} ponds ({ids}) lie {_km(centre, points[group[0]])} km from the depot: "
                 "another farm, left out."
             )
         elif len(group) == 1 or depot is not None:
@@ -64,8 +64,12 @@ def _far_depot(depot: LonLat, points: Sequence[LonLat], groups: Sequence[Sequenc
     return Fault("depot", f"the depot lies {away_km(depot, points):.0f} km from the nearest pond", action)
 
 
+def _km(a: LonLat, b: LonLat) -> str:
+    return f"{distance_m(a, b) / 1000.0:.0f}"
+
+
 def _described(group: Sequence[Draft]) -> str:
-    lon, lat = middle([draft.point() for draft in group])
+    lon, lat = middle([draft.sampling_point for draft in group])
     ponds = "1 pond lies" if len(group) == 1 else f"{len(group)} ponds lie"
     return f"{ponds} around {lon:.6f},{lat:.6f}"
 
@@ -77,7 +81,7 @@ def _far_ponds(group: Sequence[Draft], centre: LonLat) -> list[Fault]:
     return [
         Fault(
             draft.feature.place,
-            f"pond {draft.id!r} lies {distance_m(centre, draft.point()) / 1000.0:.0f} km from the rest of the farm",
+            f"pond {draft.id!r} lies {_km(centre, draft.sampling_point)} km from the rest of the farm",
             action,
         )
         for draft in group

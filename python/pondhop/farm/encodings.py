@@ -122,7 +122,7 @@ def decode(content: bytes, notes: Notes, declared: str | None = None) -> str:
 
 
 def guess_encoding(content: bytes) -> tuple[str, str]:
-    """The codec in which bytes read most like words, and its name for people; Windows Latin for want of a better one."""
+    """The codec in which bytes read most like words, and its name for people; else Windows Latin."""
     foreign_words = [word for word in content.split() if not word.isascii()]
     sample = b" ".join(foreign_words)
     found: list[tuple[float, int, _Encoding]] = []
@@ -137,18 +137,21 @@ def guess_encoding(content: bytes) -> tuple[str, str]:
             continue
         frequent = sum(letter in encoding.frequent for letter in letters) / max(1, len(letters))
         found.append((frequent, -order, encoding))
+    if _reads_as_vietnamese(sample):
+        return "cp1258", "Vietnamese (Windows-1258)"
     if found and not _reads_as_latin(sample):
         best = max(found, key=lambda item: item[:2])[2]
         return best.codec, best.label
-    if _reads_as_vietnamese(sample):
-        return "cp1258", "Vietnamese (Windows-1258)"
     return "cp1252", "Windows Latin (cp1252)"
 
 
 def _stand_together(text: str) -> bool:
     """Whether foreign letters stand beside each other, as in a script of its own, and not among Latin letters."""
     pairs = list(itertools.pairwise(text))
-    mixed = sum(a.isascii() != b.isascii() and a.isalpha() and b.isalpha() for a, b in pairs)
+    mixed = sum(
+        (a.isascii() and a.isalpha() and not b.isascii()) or (b.isascii() and b.isalpha() and not a.isascii())
+        for a, b in pairs
+    )
     together = sum(not a.isascii() and not b.isascii() for a, b in pairs)
     return together > mixed
 
@@ -173,4 +176,10 @@ def _reads_as_vietnamese(sample: bytes) -> bool:
         return False
     marks = [index for index, letter in enumerate(text) if unicodedata.combining(letter)]
     has_own_letters = any(letter in "ơưƠƯăĂđĐ" for letter in text)
-    return bool(marks) and has_own_letters and all(text[i - 1].lower() in "aăâeêioôơuưy" for i in marks if i > 0)
+    has_plain_letters = any(letter.isascii() and letter.isalpha() for letter in text)
+    return (
+        bool(marks)
+        and has_own_letters
+        and has_plain_letters
+        and all(text[i - 1].lower() in "aăâeêioôơuưy" for i in marks if i > 0)
+    )

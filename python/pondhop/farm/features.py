@@ -84,11 +84,10 @@ class Feature:
 
         Spelling is forgiving: ``Pond ID`` is ``pond_id``. Blank values count as absent.
         """
-        spellings = _spellings(tuple(self.properties))
-        for name in names:
-            key = spellings.get(normal_name(name))
-            if key is not None and not is_blank(self.properties[key]):
-                return key, self.properties[key]
+        for key in present_columns(tuple(self.properties), names):
+            value = self.properties[key]
+            if not is_blank(value):
+                return key, value
         return None
 
     @property
@@ -158,6 +157,16 @@ def _spellings(keys: tuple[str, ...]) -> dict[str, str]:
     ``@id`` and its like are no columns of people, but of OpenStreetMap.
     """
     return {normal_name(key): key for key in reversed(keys) if not key.startswith("@")}
+
+
+@lru_cache(maxsize=4096)
+def present_columns(keys: tuple[str, ...], names: tuple[str, ...]) -> tuple[str, ...]:
+    """Those of some columns that a feature has, as it spells them, in the order of `names`.
+
+    Remembered, because all features of a large file have the same columns and are asked for dozens of names each.
+    """
+    spellings = _spellings(keys)
+    return tuple(spellings[plain] for name in names if (plain := normal_name(name)) in spellings)
 
 
 @lru_cache(maxsize=4096)

@@ -1,9 +1,11 @@
-"""GeoJSON as features; parsed here, so that faults name their place in the file and the heavy packages stay unloaded."""
+"""GeoJSON as features; parsed here, so that faults name their place and heavy packages stay unloaded."""
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
+import re
 import sys
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -23,31 +25,34 @@ def read_json(text: str, source: Source) -> None:
     document: Any = _parse_lines(text) or parse_json(text, source)
     if source.faults:
         return
-    if is_esri_json(document):
-        read_esri_json(document, source)
+    try:
+        if is_esri_json(document):
+            read_esri_json(document, source)
+            return
+    except (ValueError, RecursionError) as error:
+        source.faults.append(json_fault(text, error))
         return
     if isinstance(document, dict) and document.get("type") == "Topology" and {"objects", "arcs"} <= document.keys():
         read_topojson(document, source)
         return
-    if isinstance(document, dict) and isinstance(document.get("name"), str) and document["name"].strip():
-        source.name = document["name"].strip()
     try:
         for place, feature in _feature_list(document, source):
             _read_feature(place, feature, source)
     except (ValueError, RecursionError) as error:
         source.faults.append(json_fault(text, error))
         return
+    if isinstance(document, dict) and isinstance(document.get("name"), str) and document["name"].strip():
+        source.name = document["name"].strip()
     if isinstance(document, dict) and document.get("crs") is not None:
         _apply_crs(document["crs"], source)
 
 
 def _parse_lines(text: str) -> object | None:
     """A document of one feature a line, as GeoJSON text sequences are; ``None`` where the text is none."""
-    first_line, _, rest = text.lstrip().partition("\n")
-    if not rest.lstrip().startswith("{"):
+    if not re.match(r"\s*\{[^\n]*\}\s*\n\s*\{", text):
         return None
     try:
-        features = [json.loads(line) for line in (first_line, *rest.splitlines()) if line.strip()]
+        features = [json.loads(line) for line in text.splitlines() if line.strip()]
     except (ValueError, RecursionError):
         return None
     is_sequence = all(isinstance(feature, dict) and feature.get("type") == "Feature" for feature in features)
@@ -148,8 +153,8 @@ def _positions(place: str, value: Any, depth: int, faults: list[Fault]) -> Any:
             faults.append(Fault(place, f"{shown(value)} is no list of positions", action))
             return None
         # Places are worked out only where something is wrong: large files hold millions of positions.
-        if depth == 1 and all(map(_is_position, value)):
-            return [(float(position[0]), float(position[1])) for position in value]
+        if depth == 1 and _are_positions(value):
+            return [(position[0], position[1]) for position in value]
         parts = [_positions(f"{place}[{index}]", part, depth - 1, faults) for index, part in enumerate(value)]
         return None if any(part is None for part in parts) else parts
     if not isinstance(value, list) or len(value) < 2:
@@ -164,15 +169,14 @@ def _positions(place: str, value: Any, depth: int, faults: list[Fault]) -> Any:
     return None if None in numbers else (numbers[0], numbers[1])
 
 
-def _is_position(value: object) -> bool:
-    return (
-        isinstance(value, list)
-        and len(value) >= 2
-        and isinstance(value[0], float)
-        and isinstance(value[1], float)
-        and math.isfinite(value[0])
-        and math.isfinite(value[1])
-    )
+def _are_positions(values: list[Any]) -> bool:
+    """Whether a list holds nothing but finite positions, all numbers with a decimal point."""
+    if set(map(type, values)) != {list} or min(map(len, values)) < 2:
+        return False
+    if set(map(type, itertools.chain.from_iterable(values))) != {float}:
+        return False
+    # One that is not finite makes the sum so.
+    return math.isfinite(sum(itertools.chain.from_iterable(values)))
 
 
 def _apply_crs(crs: object, source: Source) -> None:

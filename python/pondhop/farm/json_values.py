@@ -16,30 +16,31 @@ _LARGE = 1_000_000
 
 
 class Features:
-    """The list ``features`` of a large document, parsed one by one while it is walked through."""
+    """The list ``features`` of a large document, parsed one by one while it is walked through.
 
-    def __init__(self, text: str, start: int) -> None:
+    The members of the document that follow the list are there once the walk is over.
+    """
+
+    def __init__(self, text: str, start: int, members: dict[str, Any]) -> None:
         self._text = text
         self._start = start
-        self.end = start
+        self._members = members
 
     def __iter__(self) -> Iterator[Any]:
-        """Yield the values; raises `json.JSONDecodeError` where the text is no JSON, and sets `end` behind the list."""
+        """Yield the values; raises `json.JSONDecodeError` where the text is no JSON."""
         text, decode = self._text, json.JSONDecoder().raw_decode
         at = _after_blank(text, self._start + 1)
-        if text[at : at + 1] == "]":
-            self.end = at + 1
-            return
-        while True:
+        while text[at : at + 1] != "]":
             value, at = decode(text, at)
             yield value
             at = _after_blank(text, at)
-            if text[at : at + 1] == "]":
-                self.end = at + 1
-                return
-            if text[at : at + 1] != ",":
+            if text[at : at + 1] == ",":
+                at = _after_blank(text, at + 1)
+            elif text[at : at + 1] != "]":
                 raise json.JSONDecodeError("Expecting ',' delimiter", text, at)
-            at = _after_blank(text, at + 1)
+        _parse_members(text, _after_comma(text, at + 1), self._members)
+        # Let go, because the members hold this list, and a circle would keep the text in memory.
+        self._members = {}
 
 
 def parse_json(text: str, source: Source) -> Any:
@@ -63,35 +64,46 @@ def json_fault(text: str, error: ValueError | RecursionError) -> Fault:
 
 
 def _parse_large(text: str) -> Any:
-    """A document whose members are decoded one by one; only a list ``features`` is put off."""
-    decode = json.JSONDecoder().raw_decode
+    """A document whose list ``features`` is put off, if it is of the usual shape."""
     at = _after_blank(text, 0)
     if text[at : at + 1] != "{":
         return json.loads(text)
     members: dict[str, Any] = {}
-    at = _after_blank(text, at + 1)
+    _parse_members(text, _after_blank(text, at + 1), members)
+    features = members.get("features")
+    if isinstance(features, Features) and "type" not in members and "geometryType" not in members:
+        # What the features are stands behind them: walked through twice, which costs less than holding all at a time.
+        for _ in features:
+            pass
+    return members
+
+
+def _parse_members(text: str, at: int, members: dict[str, Any]) -> None:
+    """Add the members of an object from a position on, up to its end or to a list ``features``."""
+    decode = json.JSONDecoder().raw_decode
     while text[at : at + 1] != "}":
         key, at = decode(text, at)
         at = _after_blank(text, at)
         if not isinstance(key, str) or text[at : at + 1] != ":":
-            return json.loads(text)
+            raise json.JSONDecodeError("Expecting ':' delimiter", text, at)
         at = _after_blank(text, at + 1)
-        if key == "features" and text[at : at + 1] == "[":
-            features = Features(text, at)
-            # Walked through once to find its end; parsing twice costs less than holding all values at a time.
-            for _ in features:
-                pass
-            members[key], at = features, features.end
-        else:
-            members[key], at = decode(text, at)
-        at = _after_blank(text, at)
-        if text[at : at + 1] == ",":
-            at = _after_blank(text, at + 1)
-        elif text[at : at + 1] != "}":
-            return json.loads(text)
+        if key == "features" and text[at : at + 1] == "[" and key not in members:
+            members[key] = Features(text, at, members)
+            return
+        members[key], at = decode(text, at)
+        at = _after_comma(text, at)
     if _after_blank(text, at + 1) != len(text):
-        return json.loads(text)
-    return members
+        raise json.JSONDecodeError("Extra data", text, at + 1)
+
+
+def _after_comma(text: str, at: int) -> int:
+    """The next member, or the end of the object."""
+    at = _after_blank(text, at)
+    if text[at : at + 1] == ",":
+        return _after_blank(text, at + 1)
+    if text[at : at + 1] != "}":
+        raise json.JSONDecodeError("Expecting ',' delimiter", text, at)
+    return at
 
 
 def _after_blank(text: str, at: int) -> int:

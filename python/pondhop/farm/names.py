@@ -166,10 +166,11 @@ def _tell_copies(drafts: Sequence[Draft], source: Source) -> None:
     if not doubles:
         return
     across = [(first, second) for first, second in doubles if first.feature.folders != second.feature.folders]
-    copies = [pair for pair in across if distance_m(pair[0].point(), pair[1].point()) < COPY_M]
+    copies = [pair for pair in across if distance_m(pair[0].sampling_point, pair[1].sampling_point) < COPY_M]
     if copies:
         layers = dict.fromkeys(_layer(draft) for pair in copies for draft in pair)
-        message = f"{len(copies)} ponds are there twice, in layers {listed(map(repr, layers))}"
+        ponds = "1 pond is" if len(copies) == 1 else f"{len(copies)} ponds are"
+        message = f"{ponds} there twice, in layers {listed(map(repr, layers))}"
         source.faults.append(
             Fault("file", message, f"choose one with --layer {next(iter(layers))!r}, or remove the other")
         )

@@ -1,4 +1,4 @@
-"""Features made into ponds: outlines closed and checked, several parts told apart, what is drawn among them left out."""
+"""Features made into ponds: outlines closed and checked, parts told apart, what is drawn among them left out."""
 
 from __future__ import annotations
 
@@ -41,27 +41,24 @@ class Draft:
     outline
         Valid and closed; empty for a pond given as a point.
     sampling_point
-        What the file says; ``None`` if it is still to be found.
+        What the file says, or a place well inside.
     service_s
         Seconds on station, if the file says them.
     part
         Which of several ponds of its feature it is, from 1; 0 if it is the only one.
     id
         Its name, once all ponds are known.
+    area_m2
+        Of the outline.
     """
 
     feature: Feature
     outline: Area
-    sampling_point: LonLat | None
+    sampling_point: LonLat
     service_s: float | None
     part: int = 0
     id: str = ""
-
-    def point(self) -> LonLat:
-        """Where it is sampled."""
-        if self.sampling_point is None:
-            self.sampling_point = shapes.point_inside(self.outline)
-        return self.sampling_point
+    area_m2: float = 0.0
 
 
 def read_ponds(told: Sorted, source: Source) -> list[Draft]:
@@ -70,7 +67,6 @@ def read_ponds(told: Sorted, source: Source) -> list[Draft]:
     points: dict[int, Feature] = {}
     open_lines: list[Feature] = []
     order = {id(feature): index for index, feature in enumerate(told.ponds)}
-    num_empty = 0
     for feature in told.ponds:
         geometry = feature.geometry
         if geometry.polygons or any(_closed_line(line) for line in geometry.lines):
@@ -80,7 +76,6 @@ def read_ponds(told: Sorted, source: Source) -> list[Draft]:
         elif geometry.points:
             points[order[id(feature)]] = feature
         else:
-            num_empty += 1
             source.faults.append(
                 Fault(feature.place, "the feature has no geometry", "draw each pond as one polygon or point")
             )
@@ -117,8 +112,16 @@ def _from_outlines(feature: Feature, source: Source) -> list[Draft]:
     elif len(areas) == 1:
         sampling_point = _marked_place(feature, areas[0], source)
     is_single = len(areas) == 1
+    # Where it is sampled is asked here, while its polygon is still at hand.
     return [
-        Draft(feature, area, sampling_point, service_s, 0 if is_single else number)
+        Draft(
+            feature,
+            area,
+            sampling_point or shapes.point_inside(area),
+            service_s,
+            0 if is_single else number,
+            area_m2=shapes.area_m2(area),
+        )
         for number, area in enumerate(areas, start=1)
     ]
 
@@ -179,7 +182,7 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
     source
         Gets faults and notes.
     may_mend
-        Whether parts that enclose nothing are dropped where another part is good: a sliver is no reason to refuse a pond.
+        Whether parts that enclose nothing are dropped where another part is good: a sliver refuses no pond.
     """
     polygons = [*feature.geometry.polygons]
     for line in feature.geometry.lines:
@@ -252,9 +255,9 @@ def _without_surrounding(drafts: list[Draft], pins: list[Feature], source: Sourc
     A property ``role`` says that one is a pond all the same. Single ponds within ponds stay: islands have ponds.
     """
     outlines = [draft.outline for draft in drafts]
-    points = [draft.point() for draft in drafts]
+    points = [draft.sampling_point for draft in drafts]
     within: dict[int, int] = {}
-    sizes_m2 = [shapes.area_m2(outline) for outline in outlines]
+    sizes_m2 = [draft.area_m2 for draft in drafts]
     for inner, outer in shapes.places_within(points, outlines):
         if inner != outer and sizes_m2[inner] < sizes_m2[outer]:
             within[outer] = within.get(outer, 0) + 1

@@ -63,10 +63,10 @@ def utm_crs(text: str) -> str | None:
     code = re.search(r"EPSG:{1,2}(\d{4,6})|^(32[67]\d\d)$", plain)
     if code:
         return f"EPSG:{code[1] or code[2]}"
-    match = re.search(r"(?<!\d)(\d{1,2})\s*(NORTH|SOUTH|NORTE|SUR|SUL|[C-HJ-NP-X])?(?![A-Z\d])", plain)
-    if not match or not 1 <= int(match[1]) <= 60 or not match[2]:
-        return None
-    half = match[2]
-    is_south = half in {"S", "SOUTH", "SUR", "SUL"} or (len(half) == 1 and half in _SOUTHERN_BANDS)
-    is_north = half in {"NORTH", "NORTE"} or (len(half) == 1 and half in _NORTHERN_BANDS)
-    return f"EPSG:{(327 if is_south else 326) * 100 + int(match[1])}" if is_south or is_north else None
+    zones = re.findall(r"(?<!\d)(\d{1,2})\s*(NORTH|SOUTH|NORTE|SUR|SUL|[C-HJ-NP-X])(?![A-Z\d])", plain)
+    for number, half in zones:
+        is_south = half in {"S", "SOUTH", "SUR", "SUL"} or (len(half) == 1 and half in _SOUTHERN_BANDS)
+        is_north = half in {"NORTH", "NORTE"} or (len(half) == 1 and half in _NORTHERN_BANDS)
+        if 1 <= int(number) <= 60 and (is_south or is_north):
+            return f"EPSG:{(327 if is_south else 326) * 100 + int(number)}"
+    return None

@@ -91,7 +91,7 @@ def read_farm(
     ids = {draft.id for draft in drafts}
     return Farm(
         clean_text(source.name) or "farm",
-        tuple(Pond(draft.id, draft.point(), draft.outline, draft.service_s) for draft in drafts),
+        tuple(Pond(draft.id, draft.sampling_point, draft.outline, draft.service_s) for draft in drafts),
         found_depot,
         tuple(stations),
         tuple(no_fly),
@@ -133,7 +133,7 @@ def _sorted(source: Source) -> Sorted:
 
 def _areas(told: Sorted, drafts: Sequence[Draft], source: Source) -> tuple[list[Area], list[Area]]:
     """No-fly areas and fences; those told by name alone must make sense: ponds outside of the one, inside the other."""
-    points = [draft.point() for draft in drafts]
+    points = [draft.sampling_point for draft in drafts]
     areas: dict[str, list[Area]] = {"no_fly": [], "fence": []}
     for role, features in (("no_fly", told.no_fly), ("fence", told.fences)):
         for feature in features:
@@ -159,7 +159,7 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     offsets = [
         (-shapes.clearance_m(draft.sampling_point, draft.outline), draft.feature.place)
         for draft in drafts
-        if draft.outline and draft.sampling_point is not None and draft.feature.find("sampling_point")
+        if draft.outline and draft.feature.find("sampling_point")
     ]
     outside = [offset for offset in offsets if offset[0] > 0.0]
     if outside:
@@ -168,7 +168,7 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
             f"{len(outside)} sampling points lie outside the outline of their pond, "
             f"the furthest by {offset_m:.1f} m ({place})."
         )
-    points, outlines = [draft.point() for draft in drafts], [draft.outline for draft in drafts]
+    points, outlines = [draft.sampling_point for draft in drafts], [draft.outline for draft in drafts]
     for inner, outer in shapes.places_within(points, outlines):
         if inner == outer:
             continue

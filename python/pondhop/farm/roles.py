@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from pondhop.errors import Fault
-from pondhop.farm.features import Feature, Source, is_blank, listed, normal_name
+from pondhop.farm.features import Feature, Source, is_blank, listed, normal_name, present_columns
 from pondhop.farm.vocabulary import column_words
 from pondhop.farm.words import Meaning, is_unnamed, meanings
 
@@ -96,7 +96,7 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
         _file(feature, verdict, told, left_out, source)
     _tell_left_out(left_out, told, doubtful, source)
     for feature, because in doubtful:
-        message = f"is this a pond? it is called {because}"
+        message = f"is this a pond? {because}"
         action = "say so in a property role: pond, no_fly, fence or other; or rename it, as in 'Pond 7' or 'No fly 1'"
         source.faults.append(Fault(feature.place, message, action))
     return told
@@ -128,7 +128,7 @@ def _file(
         if not verdict.is_explicit:
             told.guessed.add(feature.place)
             if meaning is not Meaning.START:
-                sentence = f"{feature.place}: taken as {meaning.value}, because it is called {verdict.because}."
+                sentence = f"{feature.place}: taken as {meaning.value}, because {verdict.because}."
                 source.notes.add(sentence, kind=f"taken as {meaning.value}")
     else:
         told.ponds.append(feature)
@@ -145,7 +145,7 @@ def _tell_left_out(
     for meaning, features in left_out.items():
         outlines = [feature for feature in features if feature.geometry.polygons]
         if len(outlines) > max(1, num_outlines) and not any(feature.folders for feature in outlines):
-            doubtful.extend((feature, repr(feature.name)) for feature in outlines if feature.name)
+            doubtful.extend((feature, f"it is called {feature.name!r}") for feature in outlines if feature.name)
             features = [feature for feature in features if not feature.geometry.polygons or not feature.name]
         if features:
             names = listed(feature.told() for feature in features)
@@ -186,14 +186,14 @@ def _verdict(feature: Feature, has_layers: bool, source: Source) -> _Verdict | N
     name = feature.name
     first, said = None, ""
     if name and not is_unnamed(name):
-        first, said = _decided(name, is_line=_is_line(feature)), repr(name)
+        first, said = _decided(name, is_line=_is_line(feature)), f"it is called {name!r}"
         if first is None and Meaning.SAMPLING in meanings(name):
             return _Verdict(None)
     hints = list(_hints(feature, has_layers))
     second, hinted = next(((meaning, hint) for meaning, hint in hints if meaning is not None), (None, ""))
     if first is Meaning.POND:
         if Meaning.NO_FLY in meanings(name) or second is Meaning.NO_FLY:
-            return _Verdict(None, said if second is not Meaning.NO_FLY else f"{said} in {hinted}", is_doubtful=True)
+            return _Verdict(None, said if second is not Meaning.NO_FLY else f"{said}, but {hinted}", is_doubtful=True)
         if _is_point(feature) and {Meaning.OTHER, Meaning.START} & meanings(name):
             return _Verdict(None, said, is_doubtful=True)
         return _Verdict(first, said)
@@ -249,19 +249,19 @@ def _decided(text: str, *, is_line: bool) -> Meaning | None:
 
 def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None, str]]:
     """What kinds, map tags, folders and styles say, the nearest to the feature first."""
-    for column in _KIND_COLUMNS:
-        found = feature.find(column)
-        if found is not None and isinstance(found[1], str):
-            yield _decided(found[1], is_line=False), f"{found[0]} {found[1][:40]!r}"
+    for key in present_columns(tuple(feature.properties), _KIND_COLUMNS):
+        value = feature.properties[key]
+        if isinstance(value, str) and not is_blank(value):
+            yield _decided(value, is_line=False), f"its {key} is {value[:40]!r}"
     yield from _tags(feature)
     for folder in reversed(feature.folders):
         meaning = _decided(folder, is_line=False)
         # The only layer of a file holds the ponds, whatever it is called, unless that is something to keep out of.
         if has_layers or meaning in {Meaning.NO_FLY, Meaning.FENCE, Meaning.BOUNDARY}:
-            yield (None if meaning is Meaning.UNCERTAIN else meaning), repr(folder)
+            yield (None if meaning is Meaning.UNCERTAIN else meaning), f"it lies in {folder!r}"
     if feature.style:
         meaning = _decided(feature.style, is_line=False)
-        yield (meaning if meaning in {Meaning.NO_FLY, Meaning.FENCE} else None), f"style {feature.style[:40]!r}"
+        yield (meaning if meaning in {Meaning.NO_FLY, Meaning.FENCE} else None), f"its style is {feature.style[:40]!r}"
 
 
 def _tags(feature: Feature) -> Iterator[tuple[Meaning | None, str]]:
@@ -270,7 +270,7 @@ def _tags(feature: Feature) -> Iterator[tuple[Meaning | None, str]]:
     for key, value in feature.properties.items():
         if is_blank(value) or str(value).strip().lower() in {"no", "false", "0", "none"}:
             continue
-        told = f"{key}={str(value)[:40]}"
+        told = f"it has {key}={str(value)[:40]}"
         if key in _OSM_OTHER and (is_osm or str(value) == "yes"):
             yield Meaning.OTHER, told
         elif key in _OSM_VALUES:

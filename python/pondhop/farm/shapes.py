@@ -14,7 +14,7 @@ import numpy as np
 
 from pondhop.errors import Fault
 from pondhop.farm.features import Positions
-from pondhop.places import EARTH_RADIUS_M, Area, LonLat, Ring, distance_m, unrolled_longitude, wrapped_longitude
+from pondhop.places import EARTH_RADIUS_M, Area, LonLat, Ring, unrolled_longitude, wrapped_longitude
 
 if TYPE_CHECKING:
     import shapely
@@ -155,10 +155,8 @@ def area_m2(rings: Area) -> float:
 
 def extent_m(rings: Area) -> float:
     """Diagonal in metres of the box around a polygon."""
-    near = rings[0][0][0]
-    lons = [unrolled_longitude(lon, near) for lon, _ in rings[0]]
-    lats = [lat for _, lat in rings[0]]
-    return distance_m((min(lons), min(lats)), (max(lons), max(lats)))
+    west, south, east, north = _on_ground(rings)[0].bounds
+    return math.hypot(east - west, north - south)
 
 
 def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tuple[int, int]]:

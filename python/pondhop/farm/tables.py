@@ -12,7 +12,7 @@ import re
 from collections.abc import Sequence
 
 from pondhop.errors import Fault
-from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns
+from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
 from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees
 from pondhop.farm.features import Feature, Geometry, Source, is_blank, listed, normal_name, shortened
@@ -184,6 +184,18 @@ def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) 
     if columns.wkt is not None:
         _read_wkt(f"{place}, column {names[columns.wkt]}", cells[columns.wkt], geometry, source)
     else:
+        if columns.pair is not None:
+            parts = parted_pair(cells[columns.pair])
+            column = f"{place}, column {names[columns.pair]}"
+            if len(parts) != 2:
+                source.faults.append(Fault(column, "the cell holds no pair of numbers", "write latitude, longitude"))
+                return None
+            lat, lon = parse_degrees(parts[0], "lat"), parse_degrees(parts[1], "lon")
+            if lat is None or lon is None:
+                shown = shortened(cells[columns.pair].strip())
+                source.faults.append(Fault(column, f"{shown!r} is no number", "write latitude, longitude in degrees"))
+                return None
+            geometry.points.append((lon, lat))
         positions = [
             position for pair in columns.corners if (position := _position(place, cells, pair, columns, source))
         ]

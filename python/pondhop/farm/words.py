@@ -1,8 +1,8 @@
 """What the names of features say, in the languages of those who farm ponds.
 
-Words of the Latin, Greek and Cyrillic alphabets match as whole words, accents aside where they are long enough to be told
-without; of other scripts, which do not set words apart or write endings onto them, they match anywhere. Longer phrases
-match first and their letters are used up: a "pump house" is no house, and the pond in "battery" (電池) is none.
+Words of the Latin, Greek and Cyrillic alphabets match as whole words, accents aside where they are long enough; of
+other scripts, which do not set words apart or write endings onto them, they match anywhere. Longer phrases match first
+and their letters are used up: a "pump house" is no house, and the pond in "battery" (電池) is none.
 """
 
 from __future__ import annotations

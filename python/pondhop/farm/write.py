@@ -23,12 +23,8 @@ def write_farm(path: str | Path, farm: Farm) -> None:
     OSError
         If the file cannot be written.
     """
-    features = [
-        _feature_json({"id": pond.id}, pond)
-        if pond.service_s is None
-        else _feature_json({"id": pond.id, "service_s": pond.service_s}, pond)
-        for pond in farm.ponds
-    ]
+    # The role is written for ponds, too: without it a pond given as a point would be a label in one that is an outline.
+    features = [_feature_json({"id": pond.id, "role": "pond"} | _service_json(pond), pond) for pond in farm.ponds]
     features.append(_point_json({"role": "depot"}, farm.depot))
     features.extend(_point_json({"role": "station"}, station) for station in farm.stations)
     features.extend(_polygon_json({"role": "no_fly"}, area) for area in farm.no_fly)
@@ -36,6 +32,10 @@ def write_farm(path: str | Path, farm: Farm) -> None:
     lines = ",\n".join(json.dumps(feature, separators=(",", ":"), allow_nan=False) for feature in features)
     head = f'{{"type":"FeatureCollection","name":{json.dumps(farm.name)},"features":[\n'
     write_all({Path(path): f"{head}{lines}\n]}}\n"})
+
+
+def _service_json(pond: Pond) -> dict[str, object]:
+    return {} if pond.service_s is None else {"service_s": pond.service_s}
 
 
 def _feature_json(properties: dict[str, object], pond: Pond) -> dict[str, object]:
