@@ -9,12 +9,19 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
 
-from pondhop import cli, instances, planners
+from hand_made import make_farm, make_plan, square
+from pondhop import cli, instances, planners, plot
 from pondhop.cli import shared
+from pondhop.files.plan_json import write_plan_json
+from pondhop.fleet import Fleet
+from pondhop.solution import FarmPlan
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 ROOT = Path(__file__).resolve().parent.parent
 FARM = ROOT / "examples" / "delta_farm.geojson"
@@ -173,6 +180,22 @@ def test_a_written_plan_can_be_judged_and_drawn(run: Run, tmp_path: Path) -> Non
     drawn = run("plot", tmp_path / "plan.json", "-o", tmp_path / "figure.svg", "--json")
     assert drawn.code == 0
     assert Path(json.loads(drawn.out)["figure"]).stat().st_size > 1000
+
+
+def test_a_drawing_says_what_the_file_does_not(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install matplotlib")
+    farm = make_farm(no_fly=((square(-89.0015, 37.001, 0.0002),),))
+    write_plan_json(tmp_path / "plan.json", make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
+    drawn: list[FarmPlan] = []
+
+    def plot_plan(farm_plan: FarmPlan) -> "Axes":
+        drawn.append(farm_plan)
+        return draw(farm_plan)
+
+    draw = plot.plot_plan
+    monkeypatch.setattr(plot, "plot_plan", plot_plan)
+    assert run("plot", tmp_path / "plan.json", "-o", tmp_path / "figure.svg").code == 0
+    assert [violation.kind for violation in drawn[0].violations] == ["crosses_no_fly"]
 
 
 def test_research_plans_can_be_drawn(run: Run, farms: Path, tmp_path: Path) -> None:

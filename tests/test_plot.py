@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hand_made import make_farm, make_plan, square, two_drones
-from pondhop import InvalidInput, Problem, _core, evaluate
+from pondhop import InvalidInput, Problem, _core, evaluate, missions
 from pondhop.farm import Pond, read_farm
 from pondhop.fleet import Fleet
 from pondhop.palette import ROUTE_COLOURS
@@ -97,6 +97,21 @@ def test_unserved_ponds_and_no_fly_zones_are_drawn() -> None:
     ax = plot_plan(make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3]]), theme="dark")
     assert "not visited" in legend_texts(ax)
     assert any(collection.get_hatch() for collection in ax.collections)
+
+
+def told(ax: Axes) -> str:
+    return "\n".join(text.get_text() for text in ax.texts)
+
+
+def test_a_plan_that_breaks_a_rule_of_the_farm_is_not_to_be_flown() -> None:
+    # A zone in the way breaks no rule of the routes themselves: only the farm knows of it.
+    farm = make_farm(no_fly=((square(-89.0015, 37.001, 0.0002),),))
+    plan = make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3, 4]])
+    assert plan.solution.plan.is_feasible
+    assert "NOT TO BE FLOWN: 1 rule broken" in told(plot_plan(missions.judged(plan)))
+    unserved = make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3]])
+    assert "NOT TO BE FLOWN: 2 rules broken" in told(plot_plan(missions.judged(unserved)))
+    assert "NOT TO BE FLOWN" not in told(plot_plan(two_drones()))
 
 
 def test_twenty_four_routes_look_different() -> None:

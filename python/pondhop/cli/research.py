@@ -161,9 +161,10 @@ def plot(
 
     with progress("Drawing", total=1) as advance:
         if farms is None:
+            from pondhop import missions
             from pondhop.files.plan_json import read_plan_json
 
-            axes = figures.plot_plan(read_plan_json(plans))
+            axes = figures.plot_plan(missions.judged(read_plan_json(plans)))
         else:
             farm, routes = _farm_and_routes(plans, farms, index)
             axes = figures.plot_solution(farm.to_problem(max(1, len(routes))), routes, boundary=farm.boundary)

@@ -101,8 +101,8 @@ def _facts(farm_plan: FarmPlan, units: Units) -> list[list[str]]:
         crossings = counted(solution.separation.num_crossings, "crossing")
         on_ways = solution.separation.num_depot_leg_crossings
         lines.append([f"{crossings} of routes between ponds, {on_ways} more on the ways out and home"])
-    if not plan.is_feasible:
-        lines.append([f"NOT TO BE FLOWN: {counted(len(plan.violations), 'rule')} broken"])
+    if not farm_plan.is_feasible:
+        lines.append([f"NOT TO BE FLOWN: {counted(len(farm_plan.violations), 'rule')} broken"])
     return lines
 
 
