@@ -23,6 +23,7 @@ from pondhop.missions.formats.qgroundcontrol import parse_qgroundcontrol_plan, q
 from pondhop.missions.formats.waypoints import parse_waypoints, waypoints
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Action, Mission, MissionItem, build_mission
+from pondhop.solution import FarmPlan
 
 STYLES = [Fleet(num_drones=2), Fleet(num_drones=2, sampling="splashdown", dwell_s=30)]
 
@@ -259,6 +260,53 @@ def test_missions_of_an_earlier_plan_are_removed(tmp_path: Path) -> None:
         "drone-1.waypoints",
         "drone-2.plan.bak",
     ]
+
+
+def unflyable() -> FarmPlan:
+    return make_plan(make_farm(), Fleet(num_drones=1, max_route_length_m=300), [[0, 1, 2, 3, 4]])
+
+
+def test_missions_of_an_earlier_plan_are_removed_where_none_can_be_flown(tmp_path: Path) -> None:
+    write_missions(tmp_path, two_drones())
+    (tmp_path / "notes.txt").write_text("the user's own")
+    with pytest.raises(InvalidInput, match="max_route_length_m is 300"):
+        write_missions(tmp_path, unflyable())
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+@pytest.mark.parametrize("farm_plan", [two_drones(), unflyable()], ids=["flyable", "unflyable"])
+@pytest.mark.parametrize("name", ["README.txt", "drone-1.param", "drone-7.plan"])
+def test_files_of_the_user_are_neither_replaced_nor_removed(tmp_path: Path, name: str, farm_plan: FarmPlan) -> None:
+    (tmp_path / name).write_text("Missions for the user's own eyes")
+    with pytest.raises(InvalidInput, match="nothing says that it wrote the one that is there"):
+        write_missions(tmp_path, farm_plan)
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [
+        (name, "Missions for the user's own eyes")
+    ]
+
+
+def test_a_mission_saved_again_by_a_ground_station_is_replaced(tmp_path: Path) -> None:
+    write_missions(tmp_path, two_drones())
+    expected = (tmp_path / "drone-1.plan").read_text()
+    (tmp_path / "drone-1.plan").write_text("as a ground station lays it out")
+    write_missions(tmp_path, two_drones())
+    assert (tmp_path / "drone-1.plan").read_text() == expected
+
+
+def test_a_failure_leaves_the_missions_of_the_earlier_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_missions(tmp_path, two_drones())
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    rename = Path.rename
+
+    def fail_at_the_readme(self: Path, target: Path) -> Path:
+        if target == tmp_path / "README.txt" and self.parent.name == "new":
+            raise OSError(5, "Input/output error")
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "rename", fail_at_the_readme)
+    with pytest.raises(OSError, match="Input/output"):
+        write_missions(tmp_path, make_plan(make_farm(), Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 @pytest.mark.parametrize(

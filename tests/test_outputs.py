@@ -46,6 +46,28 @@ def test_a_plan_takes_the_place_of_an_earlier_one(tmp_path: Path) -> None:
     assert used == contents(tmp_path / "fresh")
 
 
+@pytest.mark.parametrize("farm_plan", [one_drone(), unflyable()], ids=["flyable", "unflyable"])
+@pytest.mark.parametrize(
+    "name", ["plan.json", "plan.geojson", "plan.png", "missions/README.txt", "missions/drone-7.param"]
+)
+def test_files_of_the_user_are_neither_replaced_nor_removed(tmp_path: Path, name: str, farm_plan: FarmPlan) -> None:
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("the user's own")
+    with pytest.raises(InvalidInput, match="nothing says that it wrote the one that is there") as error:
+        outputs.write_outputs(tmp_path, farm_plan, has_figure=False)
+    assert [fault.path for fault in error.value.faults] == [str(tmp_path / name)]
+    assert contents(tmp_path) == {name: b"the user's own"}
+
+
+def test_a_plan_laid_out_by_another_program_is_still_ours(tmp_path: Path) -> None:
+    outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
+    before = contents(tmp_path)
+    plan = tmp_path / "plan.json"
+    plan.write_text(json.dumps(json.loads(plan.read_text())))
+    outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
+    assert contents(tmp_path) == before
+
+
 def test_nothing_is_left_of_missions_where_none_can_be_flown(tmp_path: Path) -> None:
     outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
     written = outputs.write_outputs(tmp_path, unflyable(), has_figure=False)

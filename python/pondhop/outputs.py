@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from pondhop.documents.atomic import Content, replace_files
+from pondhop.documents.atomic import Content, earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
 from pondhop.files.plan_geojson import plan_geojson
-from pondhop.files.plan_json import plan_json
-from pondhop.missions import is_mission_file, mission_texts
+from pondhop.files.plan_json import BEGINNING, plan_json
+from pondhop.missions import earlier_missions, mission_texts
 from pondhop.solution import FarmPlan
 from pondhop.units import Units
 
@@ -58,7 +58,7 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     Raises
     ------
     InvalidInput
-        If a folder or the like has the name of one of the files.
+        If a folder, a file of the user's own or the like has the name of one of the files.
     OSError
         If a file cannot be written; then the folder is as it was.
     """
@@ -80,6 +80,5 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
 
 def _earlier(folder: Path) -> list[str]:
     """Files of an earlier plan in the folder; those of the user are none."""
-    missions = folder / MISSIONS
-    names = [path.name for path in missions.iterdir()] if missions.is_dir() else []
-    return [PLAN_JSON, PLAN_GEOJSON, *FIGURES, *(f"{MISSIONS}/{name}" for name in names if is_mission_file(name))]
+    plans = earlier_files(folder, (PLAN_JSON, PLAN_GEOJSON, *FIGURES), PLAN_JSON, BEGINNING)
+    return [*plans, *(f"{MISSIONS}/{name}" for name in earlier_missions(folder / MISSIONS))]

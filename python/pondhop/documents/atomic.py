@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import stat
 import tempfile
@@ -15,6 +16,9 @@ from pondhop.errors import Fault, InvalidInput
 
 Content = str | bytes | Iterable[str]
 """Text, written as UTF-8 with the line ends it has, at once or in parts; or bytes."""
+
+_MAX_BEGINNING = 200
+"""Bytes of a file that tell whose it is."""
 
 STAGING_PREFIX = ".pondhop-"
 """How the names of temporary folders begin; one is left behind only where the program is killed or the power fails."""
@@ -87,6 +91,46 @@ def replace_files(folder: Path, files: Mapping[str, Content], earlier: Iterable[
             with suppress(OSError):
                 folder.rmdir()
         raise
+
+
+def earlier_files(folder: Path, names: Iterable[str], witness: str, beginning: re.Pattern[bytes]) -> list[str]:
+    """Return which files of some names are in a folder, once it is sure that they are our own of an earlier time.
+
+    A name proves nothing: many a folder has a ``README.txt`` that a person wrote. All of the files are taken for ours
+    if one of them, the witness, begins as only we begin it.
+
+    Parameters
+    ----------
+    folder
+        Where to look; it may be missing.
+    names
+        What our files are called.
+    witness
+        The name of the file that tells.
+    beginning
+        What the witness begins with.
+
+    Raises
+    ------
+    InvalidInput
+        With every file of such a name that is not ours; or where a folder, a device or the like has one.
+    OSError
+        If the witness cannot be read.
+    """
+    found = [name for name in names if os.path.lexists(folder / name)]
+    for name in found:
+        check_is_file_or_absent(folder / name)
+    if not found or _begins_with(folder / witness, beginning):
+        return found
+    message = "pondhop gives a file this name, and nothing says that it wrote the one that is there"
+    raise InvalidInput(Fault(str(folder / name), message, "move it away, or choose another folder") for name in found)
+
+
+def _begins_with(path: Path, beginning: re.Pattern[bytes]) -> bool:
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return beginning.match(file.read(_MAX_BEGINNING)) is not None
 
 
 def check_is_file_or_absent(path: Path) -> None:

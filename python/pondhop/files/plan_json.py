@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +29,9 @@ from pondhop.solution import FarmPlan, FarmViolation, Solution
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 SCHEMA = "pondhop-plan/2"
+
+BEGINNING = re.compile(rb'\s*\{\s*"schema"\s*:\s*"pondhop-plan/')
+"""How a plan of any version begins, whoever laid out its lines."""
 
 FLEET_KEYS = (
     "num_drones",

@@ -12,7 +12,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-from pondhop.documents.atomic import write_all
+from pondhop.documents.atomic import earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import Farm, doubt_fault
 from pondhop.missions.autopilots import ARDUPILOT
@@ -25,10 +25,10 @@ from pondhop.missions.parameters import (
     mission_planner_parameters,
     qgroundcontrol_parameters,
 )
-from pondhop.missions.readme import crew_readme
+from pondhop.missions.readme import BEGINNING, crew_readme
 from pondhop.solution import FarmPlan, FarmViolation
 
-__all__ = ["README", "is_mission_file", "judged", "mission_texts", "obstacles", "write_missions"]
+__all__ = ["README", "earlier_missions", "judged", "mission_texts", "obstacles", "write_missions"]
 
 README = "README.txt"
 
@@ -48,7 +48,7 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
 
     Every mission is checked first (see `pondhop.missions.check.broken_rules`), and every text is read back and must
     give the same mission. Files of an earlier plan in the folder are removed, also where the new ones are refused: no
-    drone is to fly one of them.
+    drone is to fly one of them. The folder changes as a whole, or stays as it was.
 
     Parameters
     ----------
@@ -65,19 +65,39 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     Raises
     ------
     InvalidInput
-        With everything that keeps the plan from being flown; then nothing is written.
+        With everything that keeps the plan from being flown, or every file of the user's own that has the name of one
+        of ours; then nothing is written.
     OSError
         If a file cannot be written.
     """
     folder = Path(folder)
+    earlier = earlier_missions(folder)
     try:
-        texts = {folder / name: text for name, text in mission_texts(farm_plan).items()}
+        texts = mission_texts(farm_plan)
     except InvalidInput:
-        _remove_missions(folder, keep=set())
+        if earlier:
+            replace_files(folder, {}, earlier)
         raise
-    write_all(texts)
-    _remove_missions(folder, keep={path.name for path in texts})
-    return list(texts)
+    replace_files(folder, texts, earlier)
+    return [folder / name for name in texts]
+
+
+def earlier_missions(folder: Path) -> list[str]:
+    """Return the names of the files that an earlier plan left in a folder of missions.
+
+    Its ``README.txt`` tells whether they are ours. That of a single mission would not: one that the crew saved again
+    with a ground station is still not to be flown after the next plan.
+
+    Raises
+    ------
+    InvalidInput
+        With every file of the user's own that has the name of one of ours.
+    OSError
+        If the folder cannot be read.
+    """
+    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    ours = [name for name in names if name == README or _MISSION_FILE.fullmatch(name)]
+    return earlier_files(folder, ours, README, BEGINNING)
 
 
 def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
@@ -143,11 +163,6 @@ def judged(farm_plan: FarmPlan) -> FarmPlan:
     return replace(farm_plan, obstacles=(*farm_plan.obstacles, *found))
 
 
-def is_mission_file(name: str) -> bool:
-    """Whether a file of that name is one that this package writes."""
-    return name == README or _MISSION_FILE.fullmatch(name) is not None
-
-
 def _doubts(farm: Farm) -> list[FarmViolation]:
     """Ponds whose place is a guess: nobody flies there before their owner has looked at them."""
     if not farm.doubts:
@@ -178,9 +193,3 @@ def _place(violation: FarmViolation) -> str:
 def _message(fault: Fault, mission: Mission) -> str:
     place = fault.path.removeprefix(mission.name).removeprefix(", ")
     return f"{place}: {fault.message}" if place else fault.message
-
-
-def _remove_missions(folder: Path, keep: set[str]) -> None:
-    for path in folder.iterdir() if folder.is_dir() else ():
-        if is_mission_file(path.name) and path.name not in keep:
-            path.unlink()

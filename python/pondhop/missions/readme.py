@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from textwrap import fill
 
 from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation, Parameter
@@ -12,6 +13,11 @@ from pondhop.units import clock_text, counted, duration_text, energy_text, heigh
 
 _WIDTH = 88
 
+_TITLE = "Pondhop missions for"
+
+BEGINNING = re.compile(rf"{_TITLE}\b".encode())
+"""How every such text begins, and hardly one of the user's own."""
+
 STANDS_APART_M = 5.0
 """Between two drones at the depot: positions are known to 1 or 2 m."""
 
@@ -19,7 +25,7 @@ STANDS_APART_M = 5.0
 def crew_readme(farm_plan: FarmPlan, autopilot: Autopilot) -> str:
     """Return the text."""
     sections = [
-        [f"Missions for {farm_plan.farm.name}, {farm_plan.fleet.sampling}, for {autopilot.name} Copter"],
+        [f"{_TITLE} {farm_plan.farm.name}, {farm_plan.fleet.sampling}, for {autopilot.name} Copter"],
         ["DRONES", *_drones(farm_plan)],
         ["BATTERY", _battery(farm_plan)],
         ["SET EVERY DRONE", *_settings(farm_plan, autopilot)],
