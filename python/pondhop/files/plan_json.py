@@ -20,11 +20,12 @@ from pondhop._core import Separation, __version__, evaluate, lower_bound, separa
 from pondhop.documents.atomic import write_all
 from pondhop.documents.schemas import check_schema, read_json
 from pondhop.errors import InvalidInput
-from pondhop.farm.model import Doubt, Farm, Pond
+from pondhop.farm.model import Doubt, Farm
 from pondhop.files import plan_json_1
 from pondhop.files.compared import differences, unknown_ponds
+from pondhop.files.plan_parts import fleet_of, read_farm_object
 from pondhop.fleet import Fleet
-from pondhop.places import LonLat, Ring
+from pondhop.places import Ring
 from pondhop.solution import FarmPlan, FarmViolation, Solution
 from pondhop.units import JOULES_PER_WATT_HOUR
 
@@ -126,7 +127,7 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
     if isinstance(content, dict) and content.get("schema") == plan_json_1.SCHEMA:
         return plan_json_1.farm_plan(content)
     check_schema(content, "plan-2")
-    farm, fleet = read_farm_object(content["farm"]), _fleet(content["fleet"])
+    farm, fleet = _farm(content["farm"]), _fleet(content["fleet"])
     routes = [[int(stop["pond"]) for trip in route["trips"] for stop in trip["stops"]] for route in content["routes"]]
     unknown = list(unknown_ponds(routes, len(farm.ponds), "routes[{route}].trips[0].stops[{order}].pond"))
     if unknown:
@@ -162,7 +163,7 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "pondhop_version": __version__,
-        "farm": farm_object(farm),
+        "farm": _farm_object(farm),
         "fleet": _fleet_object(farm_plan.fleet),
         "planner": solution.planner,
         "seed": solution.seed,
@@ -198,7 +199,7 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
     }
 
 
-def farm_object(farm: Farm) -> dict[str, Any]:
+def _farm_object(farm: Farm) -> dict[str, Any]:
     """Return a farm as it stands in the file."""
     return {
         "name": farm.name,
@@ -310,43 +311,18 @@ def _energies_home_j(farm_plan: FarmPlan) -> list[float]:
     return [float(energies_j[-1]) for energies_j in there_and_back.leg_energies_j]
 
 
-def read_farm_object(content: Mapping[str, Any]) -> Farm:
-    """Return the farm that stands in a file of any version."""
-    return Farm(
-        name=content["name"],
-        ponds=tuple(
-            Pond(pond["id"], _lon_lat(pond["sampling_point"]), _rings(pond["outline"]), pond["service_s"])
-            for pond in content["ponds"]
-        ),
-        depot=_lon_lat(content["depot"]),
-        stations=tuple(map(_lon_lat, content["stations"])),
-        no_fly=tuple(map(_rings, content["no_fly"])),
-        fences=tuple(map(_rings, content["fences"])),
-        notes=tuple(content["notes"]),
-        doubts=tuple(Doubt(doubt["pond_id"], doubt["message"]) for doubt in content["doubts"]),
-    )
+def _farm(content: Mapping[str, Any]) -> Farm:
+    doubts = tuple(Doubt(doubt["pond_id"], doubt["message"]) for doubt in content["doubts"])
+    return replace(read_farm_object(content), doubts=doubts)
 
 
 def _fleet(content: Mapping[str, Any]) -> Fleet:
-    settings = {key: content[key] for key in FLEET_KEYS}
-    try:
-        return Fleet(**settings | {"assumptions": tuple(content["assumptions"])})
-    except InvalidInput as error:
-        raise InvalidInput(replace(fault, path=f"fleet.{fault.path}") for fault in error.faults) from error
+    return fleet_of({key: content[key] for key in FLEET_KEYS}, content["assumptions"])
 
 
 def _violation(content: Mapping[str, Any]) -> FarmViolation:
     keys = ("kind", "message", "remedy", "drone", "pond", "value", "limit")
     return FarmViolation(**{key: content[key] for key in keys})
-
-
-def _lon_lat(position: list[float]) -> LonLat:
-    longitude, latitude = position
-    return longitude, latitude
-
-
-def _rings(rings: list[list[list[float]]]) -> tuple[Ring, ...]:
-    return tuple(tuple(map(_lon_lat, ring)) for ring in rings)
 
 
 def _without_words(content: Mapping[str, Any]) -> dict[str, Any]:

@@ -17,8 +17,9 @@ import numpy as np
 from pondhop._core import LocalFrame, Problem, evaluate, lower_bound_of_makespan, separation
 from pondhop.documents.schemas import check_schema
 from pondhop.errors import InvalidInput
-from pondhop.farm.model import Farm, Pond
+from pondhop.farm.model import Farm
 from pondhop.files.compared import differences, unknown_ponds
+from pondhop.files.plan_parts import fleet_of, read_farm_object
 from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan, Solution
 
@@ -51,7 +52,7 @@ def farm_plan(content: Mapping[str, Any]) -> FarmPlan:
         With every place that breaks the schema, or every number that does not follow from the routes.
     """
     check_schema(content, "plan-1")
-    farm = _farm(content["farm"])
+    farm = read_farm_object(content["farm"])
     routes = [[int(stop["pond"]) for stop in route["stops"]] for route in content["routes"]]
     unknown = list(unknown_ponds(routes, len(farm.ponds), "routes[{route}].stops[{order}].pond"))
     if unknown:
@@ -133,29 +134,8 @@ def _service_s(fleet: Mapping[str, Any]) -> float:
     return 9.8 + (height_m - float(fleet["dip_height_m"]) - 5.0) * (1.0 / 1.5 + 1.0 / 2.5) + dwell_s
 
 
-def _farm(content: Mapping[str, Any]) -> Farm:
-    def rings(area: Any) -> tuple[Any, ...]:
-        return tuple(tuple(tuple(position) for position in ring) for ring in area)
-
-    return Farm(
-        name=content["name"],
-        ponds=tuple(
-            Pond(pond["id"], tuple(pond["sampling_point"]), rings(pond["outline"]), pond["service_s"])
-            for pond in content["ponds"]
-        ),
-        depot=tuple(content["depot"]),
-        stations=tuple(tuple(station) for station in content["stations"]),
-        no_fly=tuple(map(rings, content["no_fly"])),
-        fences=tuple(map(rings, content["fences"])),
-        notes=tuple(content["notes"]),
-    )
-
-
 def _fleet(content: Mapping[str, Any]) -> Fleet:
     settings = {key: content[key] for key in _FLEET_KEYS}
     # Version 1 planned with times on the water that no mission can hold; what was planned is in the problem.
     settings["dwell_s"] = max(1.0, float(math.ceil(content["dwell_s"])))
-    try:
-        return Fleet(**settings, assumptions=tuple(content["assumptions"]))
-    except InvalidInput as error:
-        raise InvalidInput(replace(fault, path=f"fleet.{fault.path}") for fault in error.faults) from error
+    return fleet_of(settings, content["assumptions"])
