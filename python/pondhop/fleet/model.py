@@ -11,10 +11,9 @@ from pondhop._core import Energy
 from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet import times
 from pondhop.fleet.settings import DECISIVE, MAX_HEIGHT_M, NUMBERS
+from pondhop.units import JOULES_PER_WATT_HOUR
 
 SamplingStyle = Literal["hover-dip", "splashdown"]
-
-_JOULES_PER_WATT_HOUR = 3600.0
 
 LAYER_SPACING_M = 3.0
 """How much higher each drone comes home than the one before it, where nothing else is said."""
@@ -167,7 +166,7 @@ class Fleet:
         if self.battery_wh is None:
             return math.inf
         share = self.health_percent / 100 * (1 - self.reserve_percent / 100)
-        return self.battery_wh * _JOULES_PER_WATT_HOUR * share
+        return self.battery_wh * JOULES_PER_WATT_HOUR * share
 
     @property
     def energy(self) -> Energy:

@@ -37,10 +37,23 @@ def landing_s(fleet: Fleet, height_m: float) -> float:
     An autopilot descends at its speed for missions down to ``slow_landing_height_m`` and slowly from there; then it
     waits until it is sure to have landed.
     """
+    fast_m, slow_m, settling_s = _landing(fleet, height_m)
+    return slow_m / fleet.landing_speed_m_s + fast_m / fleet.descent_speed_m_s + settling_s
+
+
+def _landing(fleet: Fleet, height_m: float) -> tuple[float, float, float]:
+    """Return how far a landing is fast and how far slow, in metres, and how long it settles, in seconds."""
     slow_m = min(height_m, fleet.slow_landing_height_m)
     fast_m = height_m - slow_m
-    settling_s = fleet.landing_extra_s + (fleet.fast_landing_extra_s if fast_m > 0 else 0.0)
-    return slow_m / fleet.landing_speed_m_s + fast_m / fleet.descent_speed_m_s + settling_s
+    return fast_m, slow_m, fleet.landing_extra_s + (fleet.fast_landing_extra_s if fast_m > 0 else 0.0)
+
+
+def _first_leg_extra_s(fleet: Fleet) -> float:
+    return fleet.first_leg_extra_s if fleet.sampling == "hover-dip" else 0.0
+
+
+def _last_dip_extra_s(fleet: Fleet) -> float:
+    return fleet.last_dip_extra_s if fleet.sampling == "hover-dip" else 0.0
 
 
 def takeoff_s(fleet: Fleet) -> float:
@@ -49,10 +62,9 @@ def takeoff_s(fleet: Fleet) -> float:
     Drones fly to their first pond in layers, and go down to the transit height there; this is the time of the highest,
     so that no drone is later than planned.
     """
-    extra_s = fleet.first_leg_extra_s if fleet.sampling == "hover-dip" else 0.0
     height_m = fleet.way_out_height_of(fleet.num_drones - 1)
     down_s = (height_m - fleet.transit_height_m) / fleet.descent_speed_m_s
-    return fleet.spool_up_s + fleet.climb_extra_s + climb_s(fleet, height_m) + down_s + extra_s
+    return fleet.spool_up_s + fleet.climb_extra_s + climb_s(fleet, height_m) + down_s + _first_leg_extra_s(fleet)
 
 
 def sampling_s(fleet: Fleet) -> float:
@@ -70,9 +82,9 @@ def way_home_fixed_s(fleet: Fleet) -> float:
     Drones come home in layers; this is the time of the highest, so that no drone is later than planned.
     """
     height_m = fleet.return_height_of(fleet.num_drones - 1)
-    extra_s = fleet.last_dip_extra_s if fleet.sampling == "hover-dip" else 0.0
-    rise_s = climb_s(fleet, height_m - fleet.transit_height_m)
-    return rise_s + fleet.return_loiter_s + landing_s(fleet, height_m) + fleet.return_extra_s + extra_s
+    up_s = climb_s(fleet, height_m - fleet.transit_height_m)
+    extra_s = _last_dip_extra_s(fleet)
+    return up_s + fleet.return_loiter_s + landing_s(fleet, height_m) + fleet.return_extra_s + extra_s
 
 
 def power_w(fleet: Fleet, airspeed_m_s: float) -> float:
@@ -86,6 +98,11 @@ def climb_j(fleet: Fleet, height_m: float) -> float:
     return climb_s(fleet, height_m) * power
 
 
+def rise_j(fleet: Fleet, height_m: float) -> float:
+    """Return the energy of lifting off and climbing to some height."""
+    return fleet.climb_extra_s * fleet.liftoff_power_w + climb_j(fleet, height_m)
+
+
 def descent_j(fleet: Fleet, height_m: float, speed_m_s: float) -> float:
     """Return the energy of a descent."""
     power = max(0.0, fleet.hover_power_w - fleet.descent_power_w_per_m_s * speed_m_s)
@@ -94,29 +111,24 @@ def descent_j(fleet: Fleet, height_m: float, speed_m_s: float) -> float:
 
 def landing_j(fleet: Fleet, height_m: float) -> float:
     """Return the energy of `landing_s`."""
-    slow_m = min(height_m, fleet.slow_landing_height_m)
-    fast_m = height_m - slow_m
-    settling_s = fleet.landing_extra_s + (fleet.fast_landing_extra_s if fast_m > 0 else 0.0)
+    fast_m, slow_m, settling_s = _landing(fleet, height_m)
     descents_j = descent_j(fleet, slow_m, fleet.landing_speed_m_s) + descent_j(fleet, fast_m, fleet.descent_speed_m_s)
     return descents_j + settling_s * fleet.touchdown_power_w
 
 
 def takeoff_j(fleet: Fleet) -> float:
     """Return the energy of `takeoff_s`; spooling up draws next to nothing."""
-    extra_s = fleet.first_leg_extra_s if fleet.sampling == "hover-dip" else 0.0
     height_m = fleet.way_out_height_of(fleet.num_drones - 1)
-    lift_j = fleet.climb_extra_s * fleet.liftoff_power_w + climb_j(fleet, height_m)
     down_j = descent_j(fleet, height_m - fleet.transit_height_m, fleet.descent_speed_m_s)
-    return lift_j + down_j + extra_s * fleet.hover_power_w
+    return rise_j(fleet, height_m) + down_j + _first_leg_extra_s(fleet) * fleet.hover_power_w
 
 
 def sampling_j(fleet: Fleet, duration_s: float) -> float:
     """Return the energy of a time on station: that of `sampling_s`, with whatever it lasts longer spent on dwelling."""
     beyond_s = duration_s - sampling_s(fleet)
     if fleet.sampling == "splashdown":
-        rise_j = fleet.climb_extra_s * fleet.liftoff_power_w + climb_j(fleet, fleet.transit_height_m)
         dwell_j = max(0.0, fleet.dwell_s + beyond_s) * fleet.water_power_w
-        return landing_j(fleet, fleet.transit_height_m) + dwell_j + rise_j
+        return landing_j(fleet, fleet.transit_height_m) + dwell_j + rise_j(fleet, fleet.transit_height_m)
     dip_m = fleet.transit_height_m - fleet.dip_height_m
     hover_j = max(0.0, fleet.dip_extra_s + fleet.dwell_s + beyond_s) * fleet.hover_power_w
     return descent_j(fleet, dip_m, fleet.descent_speed_m_s) + climb_j(fleet, dip_m) + hover_j
@@ -125,7 +137,6 @@ def sampling_j(fleet: Fleet, duration_s: float) -> float:
 def way_home_fixed_j(fleet: Fleet) -> float:
     """Return the energy of `way_home_fixed_s`."""
     height_m = fleet.return_height_of(fleet.num_drones - 1)
-    extra_s = fleet.last_dip_extra_s if fleet.sampling == "hover-dip" else 0.0
-    hover_s = fleet.return_loiter_s + fleet.return_extra_s + extra_s
-    rise_j = climb_j(fleet, height_m - fleet.transit_height_m)
-    return rise_j + hover_s * fleet.hover_power_w + landing_j(fleet, height_m)
+    hover_s = fleet.return_loiter_s + fleet.return_extra_s + _last_dip_extra_s(fleet)
+    up_j = climb_j(fleet, height_m - fleet.transit_height_m)
+    return up_j + hover_s * fleet.hover_power_w + landing_j(fleet, height_m)
