@@ -24,6 +24,7 @@ from pondhop.missions.formats.waypoints import parse_waypoints, waypoints
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Action, Mission, MissionItem, build_mission
 from pondhop.solution import FarmPlan
+from pondhop.units import clock_text
 
 STYLES = [Fleet(num_drones=2), Fleet(num_drones=2, sampling="splashdown", dwell_s=30)]
 
@@ -224,13 +225,18 @@ def test_a_hover_dip_without_areas_is_told_only_what_it_needs(tmp_path: Path) ->
 
 def test_the_readme_tells_what_a_crew_must_know(tmp_path: Path) -> None:
     fleet = Fleet(num_drones=2, sampling="splashdown", battery_wh=95)
-    write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]]))
+    farm_plan = make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]])
+    write_missions(tmp_path, farm_plan)
     text = " ".join((tmp_path / "README.txt").read_text().split())
+    most_j = max(farm_plan.solution.plan.route_energies_j)
     for words in (
         "drone-2: 2 ponds",
         "takes off at 0:10, flies out 10 m high, comes home 18 m high",
         "energy: take-off",
-        "A battery gives 71.2 Wh above its reserve of 25 %",
+        f"A battery gives 71.2 Wh above its reserve of 25 %; the hungriest route takes {most_j / 3600:.1f} Wh, "
+        f"{100 * most_j / (3600 * 71.25):.0f} % of it.",
+        f"is back at {clock_text(10.0 + farm_plan.solution.plan.route_durations_s[1])}",
+        "Start every drone with a full battery.",
         "RTL_ALT 1500",
         "DISARM_DELAY 40",
         "nothing happens when a battery runs low",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from html import escape
 
@@ -157,10 +158,27 @@ class FarmPlan:
         return tuple(drone * self.fleet.takeoff_interval_s for drone in range(len(self.solution.plan.routes)))
 
     @property
+    def back_times_s(self) -> tuple[float, ...]:
+        """When each drone is back and at rest, in seconds after the first take-off."""
+        durations_s = self.solution.plan.route_durations_s
+        return tuple(start_s + float(durations_s[drone]) for drone, start_s in enumerate(self.takeoff_times_s))
+
+    @property
     def all_back_s(self) -> float:
         """When the last drone is back, in seconds after the first take-off."""
-        durations_s = self.solution.plan.route_durations_s
-        return max((start + float(durations_s[drone]) for drone, start in enumerate(self.takeoff_times_s)), default=0.0)
+        return max(self.back_times_s, default=0.0)
+
+    @property
+    def battery_text(self) -> str:
+        """What a battery gives and what the hungriest route takes of it, in a sentence or two."""
+        fleet, most_j = self.fleet, float(self.solution.plan.route_energies_j.max(initial=0.0))
+        usable_j, most = fleet.usable_energy_j, energy_text(most_j)
+        if not math.isfinite(usable_j):
+            return f"Flight time is unchecked: the fleet names no battery_wh. The hungriest route takes {most}."
+        return (
+            f"A battery gives {energy_text(usable_j)} above its reserve of {fleet.reserve_percent:g} %; "
+            f"the hungriest route takes {most}, {100 * most_j / usable_j:.0f} % of it."
+        )
 
     def energy_phases(self, drone: int) -> EnergyPhases:
         """Return what a route takes, by phases; drones count from 0 here, as routes do."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from statistics import fmean
 
@@ -37,7 +36,7 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
     console.print(_routes_table(farm_plan, units))
     if plan.route_energies_j.any():
         console.print(_energy_table(farm_plan))
-        console.print(_battery_line(farm_plan))
+        console.print(farm_plan.battery_text)
     console.print(f"All drones are back {duration_text(farm_plan.all_back_s)} after the first take-off.")
     bound = f"No plan is done with its longest route in less than {duration_text(solution.lower_bound_s)}"
     if solution.gap_s_percent is not None:
@@ -79,14 +78,13 @@ def _routes_table(farm_plan: FarmPlan, units: Units) -> Table:
         table.add_column(heading, justify="right")
     longest = int(plan.route_durations_s.argmax()) if plan.routes else None
     for drone, route in enumerate(plan.routes):
-        start_s, duration_s = farm_plan.takeoff_times_s[drone], float(plan.route_durations_s[drone])
         table.add_row(
             str(drone + 1),
             str(len(route)),
             length_text(float(plan.route_lengths[drone]), units),
-            duration_text(duration_s),
-            clock_text(start_s),
-            clock_text(start_s + duration_s),
+            duration_text(float(plan.route_durations_s[drone])),
+            clock_text(farm_plan.takeoff_times_s[drone]),
+            clock_text(farm_plan.back_times_s[drone]),
             style="bold" if drone == longest else None,
         )
     table.add_section()
@@ -113,16 +111,6 @@ def _energy_table(farm_plan: FarmPlan) -> Table:
             style="bold red" if is_over else None,
         )
     return table
-
-
-def _battery_line(farm_plan: FarmPlan) -> str:
-    most_j = float(farm_plan.solution.plan.route_energies_j.max())
-    usable_j = farm_plan.solution.problem.energy.usable_j
-    if not math.isfinite(usable_j):
-        needed = energy_text(most_j)
-        return f"Flight time is unchecked: the fleet names no battery_wh, and the hungriest route takes {needed}."
-    share = 100 * most_j / usable_j
-    return f"A battery gives {energy_text(usable_j)} above its reserve; the hungriest route takes {share:.0f} % of it."
 
 
 class SolvedFarms:

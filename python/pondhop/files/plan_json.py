@@ -280,7 +280,7 @@ def _route_object(farm_plan: FarmPlan, index: int, energies_home_j: list[float])
     energy_wh = float(plan.route_energies_j[index]) / JOULES_PER_WATT_HOUR
     trip = {
         "departure_s": start_s,
-        "arrival_s": start_s + duration_s,
+        "arrival_s": farm_plan.back_times_s[index],
         "length_m": length_m,
         "energy_wh": energy_wh,
         "usable_energy_wh": usable_j / JOULES_PER_WATT_HOUR if math.isfinite(usable_j) else None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from textwrap import fill
 
@@ -27,7 +26,7 @@ def crew_readme(farm_plan: FarmPlan, autopilot: Autopilot) -> str:
     sections = [
         [f"{_TITLE} {farm_plan.farm.name}, {farm_plan.fleet.sampling}, for {autopilot.name} Copter"],
         ["DRONES", *_drones(farm_plan)],
-        ["BATTERY", _battery(farm_plan)],
+        ["BATTERY", f"{farm_plan.battery_text} Start every drone with a full battery."],
         ["SET EVERY DRONE", *_settings(farm_plan, autopilot)],
         ["START", *_start(farm_plan)],
         ["WIND", *_wind(farm_plan)],
@@ -45,28 +44,18 @@ def _drones(farm_plan: FarmPlan) -> list[str]:
     fleet, plan = farm_plan.fleet, farm_plan.solution.plan
     rows = []
     for drone, route in enumerate(plan.routes):
-        start_s, duration_s = farm_plan.takeoff_times_s[drone], float(plan.route_durations_s[drone])
-        phases = farm_plan.energy_phases(drone)
+        start_s, back_s = farm_plan.takeoff_times_s[drone], farm_plan.back_times_s[drone]
+        duration_s, phases = float(plan.route_durations_s[drone]), farm_plan.energy_phases(drone)
         length, energy = length_text(float(plan.route_lengths[drone])), energy_text(phases.total_j)
         way_out, way_home = height_text(fleet.way_out_height_of(drone)), height_text(fleet.return_height_of(drone))
         rows += [
             f"drone-{drone + 1}: {counted(len(route), 'pond')}, {length}, {duration_text(duration_s)}, {energy}",
             f"  takes off at {clock_text(start_s)}, flies out {way_out} high, comes home {way_home} high, "
-            f"is back at {clock_text(start_s + duration_s)}",
+            f"is back at {clock_text(back_s)}",
             f"  energy: take-off {energy_text(phases.takeoff_j)}, legs {energy_text(phases.legs_j)}, "
             f"sampling {energy_text(phases.sampling_j)}, way home {energy_text(phases.way_home_j)}",
         ]
     return [*rows, f"All are back {duration_text(farm_plan.all_back_s)} after the first take-off, in calm air."]
-
-
-def _battery(farm_plan: FarmPlan) -> str:
-    fleet, most = farm_plan.fleet, energy_text(float(farm_plan.solution.plan.route_energies_j.max()))
-    if not math.isfinite(fleet.usable_energy_j):
-        return f"Flight time is unchecked: the fleet names no battery_wh. The hungriest route takes {most}."
-    return (
-        f"A battery gives {energy_text(fleet.usable_energy_j)} above its reserve of {fleet.reserve_percent:g} %; the "
-        f"hungriest route takes {most}. Start every drone with a full battery."
-    )
 
 
 def _settings(farm_plan: FarmPlan, autopilot: Autopilot) -> list[str]:

@@ -74,8 +74,7 @@ def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "li
 def _drone_label(farm_plan: FarmPlan, drone: int, units: Units) -> str:
     """What the legend says of a route: ponds, length, energy, and when the drone starts and is back."""
     plan = farm_plan.solution.plan
-    start_s = farm_plan.takeoff_times_s[drone]
-    back_s = start_s + float(plan.route_durations_s[drone])
+    start_s, back_s = farm_plan.takeoff_times_s[drone], farm_plan.back_times_s[drone]
     return ", ".join(
         [
             counted(len(plan.routes[drone]), "pond"),
