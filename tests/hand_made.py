@@ -39,9 +39,7 @@ def make_farm(**changes: object) -> Farm:
 def make_plan(farm: Farm, fleet: Fleet, routes: list[list[int]]) -> FarmPlan:
     problem = farm.to_problem(fleet)
     plan = evaluate(problem, routes)
-    return FarmPlan(
-        farm, fleet, Solution(problem, plan, "by hand", seed=1, elapsed_s=0.0, lower_bound=100.0, lower_bound_s=100.0)
-    )
+    return FarmPlan(farm, fleet, Solution(problem, plan, "by hand", seed=1, elapsed_s=0.0, known_lower_bound_s=100.0))
 
 
 def two_drones() -> FarmPlan:

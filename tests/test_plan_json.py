@@ -197,7 +197,7 @@ def test_any_plan_survives_the_round_trip(farm_plan: FarmPlan, tmp_path_factory:
 
 def test_a_bound_of_zero_has_no_gap(tmp_path: Path) -> None:
     farm_plan = two_drones()
-    farm_plan = replace(farm_plan, solution=replace(farm_plan.solution, lower_bound_s=0.0))
+    farm_plan = replace(farm_plan, solution=replace(farm_plan.solution, known_lower_bound_s=0.0))
     assert written(tmp_path, farm_plan)["gap_percent"] is None
 
 

@@ -1,5 +1,6 @@
 """The family of planners: by name, one's own, and what is said about wrong ones."""
 
+from functools import partial
 from typing import get_type_hints
 
 import numpy as np
@@ -67,6 +68,25 @@ def test_a_planner_of_ones_own(problem: Problem) -> None:
     assert solution.plan.route_lengths.tolist() == [12.0, 10.0]
     assert solution.elapsed_s >= 0.0
     assert solution.lower_bound == pytest.approx(12.0)
+
+
+def test_a_bound_is_found_once_and_only_where_it_is_asked_for(
+    problem: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found: list[str] = []
+
+    def bound(name: str, _problem: Problem) -> float:
+        found.append(name)
+        return 12.0
+
+    for name in ("lower_bound", "lower_bound_of_makespan"):
+        monkeypatch.setattr(_core, name, partial(bound, name))
+    solution = pondhop.solve(problem, planner="hpp")
+    assert found == []
+    assert solution.lower_bound == solution.lower_bound == 12.0
+    assert found == ["lower_bound"]
+    assert (solution.lower_bound_s, solution.gap_s_percent) == (12.0, solution.gap_percent)
+    assert found == ["lower_bound", "lower_bound_of_makespan"]
 
 
 def test_a_wrong_plan_is_a_result_with_violations(problem: Problem) -> None:

@@ -360,8 +360,6 @@ def solve(
         seed=wishes.seed,
         elapsed_s=planned.elapsed_s,
         cpu_s=cpu_s,
-        lower_bound=_core.lower_bound(problem),
-        lower_bound_s=_core.lower_bound_of_makespan(problem),
         is_interrupted=planned.is_interrupted,
         reason=planned.reason,
     )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pondhop import _core
 from pondhop._core import Plan, Problem, Separation, Violation
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
@@ -28,10 +30,6 @@ class Solution:
         How it was made.
     elapsed_s
         Wall time of planning, from coordinates to finished routes; 0 for a plan that was read.
-    lower_bound
-        No plan has a shorter longest route: in length units for research farms, whose drones only fly.
-    lower_bound_s
-        No plan has a route of less time as its longest: legs, stops, service, take-off and way home.
     separation
         `None` where nobody measured it.
     cpu_s
@@ -40,6 +38,8 @@ class Solution:
         Whether Ctrl-C ended the planning; the plan is the best so far.
     reason
         What `auto` chose and why; empty for other planners.
+    known_lower_bound_s
+        ``lower_bound_s`` where a file told it.
     """
 
     problem: Problem
@@ -47,12 +47,24 @@ class Solution:
     planner: str
     seed: int
     elapsed_s: float
-    lower_bound: float
-    lower_bound_s: float
     separation: Separation | None = None
     cpu_s: float = 0.0
     is_interrupted: bool = False
     reason: str = ""
+    known_lower_bound_s: float | None = None
+
+    # A bound is found when it is asked for: that takes longer than HPP, and whoever needs one does not need the other.
+
+    @cached_property
+    def lower_bound(self) -> float:
+        """No plan has a shorter longest route: in length units for research farms, whose drones only fly."""
+        return _core.lower_bound(self.problem)
+
+    @cached_property
+    def lower_bound_s(self) -> float:
+        """No plan has a route of less time as its longest: legs, stops, service, take-off and way home."""
+        known_s = self.known_lower_bound_s
+        return _core.lower_bound_of_makespan(self.problem) if known_s is None else known_s
 
     @property
     def gap_percent(self) -> float | None:

@@ -16,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pondhop._core import Separation, __version__, evaluate, lower_bound, separation
+from pondhop._core import Separation, __version__, evaluate, separation
 from pondhop.documents.atomic import write_all
 from pondhop.documents.schemas import check_schema, read_json
 from pondhop.errors import InvalidInput
@@ -139,11 +139,10 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
         planner=content["planner"],
         seed=content["seed"],
         elapsed_s=0.0,
-        lower_bound=lower_bound(problem),
-        lower_bound_s=content["lower_bound_s"],
         separation=separation(problem, routes) if content["separation"] else None,
         is_interrupted=content["is_interrupted"],
         reason=content["reason"],
+        known_lower_bound_s=content["lower_bound_s"],
     )
     derived = FarmPlan(farm, fleet, solution, num_drones_needed=content["num_drones_needed"])
     kinds = {violation.kind for violation in derived.violations}

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pondhop._core import LocalFrame, Problem, evaluate, lower_bound_of_makespan, separation
+from pondhop._core import LocalFrame, Problem, evaluate, separation
 from pondhop.documents.schemas import check_schema
 from pondhop.errors import InvalidInput
 from pondhop.farm.model import Farm
@@ -66,8 +66,6 @@ def farm_plan(content: Mapping[str, Any]) -> FarmPlan:
         planner=content["planner"],
         seed=content["seed"],
         elapsed_s=content["elapsed_s"],
-        lower_bound=content["lower_bound_m"],
-        lower_bound_s=lower_bound_of_makespan(problem),
         separation=measured,
     )
     expected = {
