@@ -23,7 +23,7 @@ from pondhop.missions.formats.qgroundcontrol import parse_qgroundcontrol_plan, q
 from pondhop.missions.formats.waypoints import parse_waypoints, waypoints
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Action, Mission, MissionItem, build_mission
-from pondhop.solution import FarmPlan
+from pondhop.solution import FarmPlan, FarmViolation
 from pondhop.units import clock_text
 
 STYLES = [Fleet(num_drones=2), Fleet(num_drones=2, sampling="splashdown", dwell_s=30)]
@@ -435,6 +435,14 @@ def test_all_faults_of_all_missions_are_told_and_nothing_is_written(tmp_path: Pa
         assert message in text
     assert {fault.path.split(",")[0] for fault in error.value.faults} == {"drone-1", "drone-2"}
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_plan_does_not_know_of_itself_is_told_beside_what_it_knows(tmp_path: Path) -> None:
+    plan = make_plan(make_farm(no_fly=((square(-89.0015, 37.001, 0.0002),),)), Fleet(1), [[0, 1, 2, 3, 4]])
+    known = FarmViolation("unconfirmed", "pond P0 was guessed", "look at it")
+    with pytest.raises(InvalidInput) as error:
+        write_missions(tmp_path, replace(plan, obstacles=(known,)))
+    assert [fault.message.partition(":")[0] for fault in error.value.faults] == ["pond P0 was guessed", "no-fly zone 1"]
 
 
 def test_a_plan_without_routes_has_no_mission(tmp_path: Path) -> None:

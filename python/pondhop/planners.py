@@ -394,22 +394,20 @@ def plan(
         As `solve`.
     """
     problem = farm.to_problem(fleet)
-    solution = solve(problem, planner=planner, **options)
-    separation = _core.separation(problem, solution.plan.routes)
-    farm_plan = FarmPlan(farm=farm, fleet=fleet, solution=replace(solution, separation=separation))
+    solved = solve(problem, planner=planner, **options)
+    solution = replace(solved, separation=_core.separation(problem, solved.plan.routes))
+    farm_plan = FarmPlan(farm, fleet, solution)
     beyond: tuple[FarmViolation, ...] = ()
     if any(violation.kind in LIMIT_KINDS for violation in solution.plan.violations):
-        beyond = tuple(_ponds_beyond_reach(farm, problem))
+        beyond = tuple(_ponds_beyond_reach(farm, solution))
         if not beyond:
             farm_plan = replace(farm_plan, num_drones_needed=drones_needed(problem, seed=solution.seed))
     return replace(farm_plan, obstacles=(*beyond, *missions.obstacles(farm_plan)))
 
 
-def _ponds_beyond_reach(farm: Farm, problem: Problem) -> Iterator[FarmViolation]:
+def _ponds_beyond_reach(farm: Farm, solution: Solution) -> Iterator[FarmViolation]:
     """Return a violation for each pond that breaks a limit even as the only one of its route."""
-    num_ponds = problem.num_ponds
-    alone = _core.evaluate(problem.replace(num_drones=num_ponds), [[pond] for pond in range(num_ponds)])
-    for violation in alone.violations:
+    for violation in solution.alone.violations:
         pond = violation.route
         if pond is not None:
             message = f"pond {farm.ponds[pond].id} is out of reach: alone it breaks {_LIMIT_NAMES[violation.kind]}"

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pondhop import _core
-from pondhop._core import Plan, Problem, Separation, Violation
+from pondhop._core import Plan, Problem, Separation, Violation, evaluate
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
 from pondhop.palette import route_colour
@@ -65,6 +65,12 @@ class Solution:
         """No plan has a route of less time as its longest: legs, stops, service, take-off and way home."""
         known_s = self.known_lower_bound_s
         return _core.lower_bound_of_makespan(self.problem) if known_s is None else known_s
+
+    @cached_property
+    def alone(self) -> Plan:
+        """The plan in which every pond is the only one of its route: what sampling it takes at least."""
+        num_ponds = self.problem.num_ponds
+        return evaluate(self.problem.replace(num_drones=num_ponds), [[pond] for pond in range(num_ponds)])
 
     @property
     def gap_percent(self) -> float | None:

@@ -158,7 +158,8 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
 def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
     farm, solution = farm_plan.farm, farm_plan.solution
     plan = solution.plan
-    energies_home_j = _energies_home_j(farm_plan)
+    # What the way home from each pond takes, landing included.
+    energies_home_j = [float(energies_j[-1]) for energies_j in solution.alone.leg_energies_j]
     return {
         "schema": SCHEMA,
         "pondhop_version": __version__,
@@ -301,13 +302,6 @@ def _route_object(farm_plan: FarmPlan, index: int, energies_home_j: list[float])
         },
         "trips": [trip],
     }
-
-
-def _energies_home_j(farm_plan: FarmPlan) -> list[float]:
-    """What the way home from each pond takes, landing included."""
-    problem = farm_plan.solution.problem
-    there_and_back = evaluate(problem, [[pond] for pond in range(problem.num_ponds)])
-    return [float(energies_j[-1]) for energies_j in there_and_back.leg_energies_j]
 
 
 def _farm(content: Mapping[str, Any]) -> Farm:

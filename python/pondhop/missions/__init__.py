@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -108,12 +109,12 @@ def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
     InvalidInput
         As `write_missions`.
     """
+    missions = _missions(farm_plan)
     faults = [
         Fault(_place(violation), violation.message, violation.remedy)
-        for violation in (*farm_plan.violations, *(obstacles(farm_plan) if not farm_plan.obstacles else ()))
+        for violation in _judged(farm_plan, missions).violations
         if violation.kind != "unserved"
     ]
-    missions = _missions(farm_plan)
     if not missions:
         faults.append(Fault("routes", "the plan has no route", "plan at least one pond"))
     if faults:
@@ -140,6 +141,22 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
     farm_plan
         Its own ``obstacles`` are passed over.
     """
+    return _obstacles(farm_plan, _missions(farm_plan))
+
+
+def judged(farm_plan: FarmPlan) -> FarmPlan:
+    """Return a plan with all that keeps it from being flown, also what its file does not tell."""
+    return _judged(farm_plan, _missions(farm_plan))
+
+
+def _judged(farm_plan: FarmPlan, missions: Sequence[Mission]) -> FarmPlan:
+    known = {(violation.kind, violation.drone) for violation in farm_plan.obstacles}
+    obstacles = _obstacles(farm_plan, missions)
+    found = [violation for violation in obstacles if (violation.kind, violation.drone) not in known]
+    return replace(farm_plan, obstacles=(*farm_plan.obstacles, *found))
+
+
+def _obstacles(farm_plan: FarmPlan, missions: Sequence[Mission]) -> tuple[FarmViolation, ...]:
     broken = [
         FarmViolation(
             rule.kind,
@@ -150,17 +167,10 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
             rule.value,
             rule.limit,
         )
-        for drone, mission in enumerate(_missions(farm_plan), start=1)
+        for drone, mission in enumerate(missions, start=1)
         for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
     ]
     return (*_doubts(farm_plan.farm), *broken)
-
-
-def judged(farm_plan: FarmPlan) -> FarmPlan:
-    """Return a plan with all that keeps it from being flown, also what its file does not tell."""
-    known = {(violation.kind, violation.drone) for violation in farm_plan.obstacles}
-    found = [violation for violation in obstacles(farm_plan) if (violation.kind, violation.drone) not in known]
-    return replace(farm_plan, obstacles=(*farm_plan.obstacles, *found))
 
 
 def _doubts(farm: Farm) -> list[FarmViolation]:
