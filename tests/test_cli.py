@@ -8,14 +8,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
 
-from hand_made import make_farm, make_plan, square
-from pondhop import cli, instances, planners, plot
+from hand_made import make_farm, make_plan, square, two_drones
+from pondhop import Separation, cli, instances, planners, plot
 from pondhop.cli import shared
+from pondhop.cli.printed import print_farm_plan
 from pondhop.files.plan_json import write_plan_json
 from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan
@@ -168,10 +170,26 @@ def test_plan_writes_everything_a_crew_needs(run: Run, tmp_path: Path) -> None:
     assert missions == drones | {"README.txt"}
 
 
+@pytest.mark.parametrize(
+    ("num_crossings", "on_ways", "words"),
+    [
+        (1, 1, "cross 1 time; 1 more crossing is on their ways out and home"),
+        (2, 0, "cross 2 times; 0 more crossings are on their ways out and home"),
+    ],
+)
+def test_crossings_are_told_as_a_person_would(
+    capsys: pytest.CaptureFixture[str], num_crossings: int, on_ways: int, words: str
+) -> None:
+    farm_plan = two_drones()
+    separation = Separation(0.25, num_crossings, on_ways)
+    print_farm_plan(replace(farm_plan, solution=replace(farm_plan.solution, separation=separation)))
+    assert words in " ".join(capsys.readouterr().out.split())
+
+
 def test_plan_as_json_is_the_plan_file(run: Run, tmp_path: Path) -> None:
     ran = run("plan", FARM, "--drones", 3, "--no-figure", "--json", "-o", tmp_path)
     assert ran.code == 0
-    assert json.loads(ran.out) == json.loads((tmp_path / "plan.json").read_text())
+    assert ran.out == (tmp_path / "plan.json").read_text()
 
 
 def test_a_written_plan_can_be_judged_and_drawn(run: Run, tmp_path: Path) -> None:
@@ -238,6 +256,16 @@ def test_nothing_of_an_earlier_plan_stays_to_be_flown(run: Run, tmp_path: Path) 
     assert run("plan", FARM, "--fleet", fleet, "--no-figure", "-o", out).code == 3
     left = {path.suffix for path in out.rglob("*") if path.is_file()}
     assert left == {".json", ".geojson"}
+
+
+def test_farms_are_written_into_folders_that_are_missing(run: Run, tmp_path: Path) -> None:
+    for command, name, words in (
+        (("generate", "--ponds", 20), "farms.json", "1 farm of 20 ponds"),
+        (("generate-farm", "--ponds", 1, "--at", "-90.9,33.4"), "farm.geojson", "1 pond"),
+    ):
+        path = tmp_path / command[0] / "deep" / name
+        assert run(*command, "-o", path).out == f"Written to {path}: {words}\n"
+        assert path.exists()
 
 
 def test_generate_is_seeded(run: Run, tmp_path: Path) -> None:

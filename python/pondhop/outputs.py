@@ -25,11 +25,14 @@ class Outputs:
     ----------
     names
         Of the files and folders written, within the folder of the plan.
+    plan_json
+        The text of ``plan.json``.
     faults
         What keeps the plan from being flown; then there are no missions.
     """
 
     names: tuple[str, ...]
+    plan_json: str
     faults: tuple[Fault, ...]
 
 
@@ -62,7 +65,8 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     OSError
         If a file cannot be written; then the folder is as it was.
     """
-    files: dict[str, Content] = {PLAN_JSON: plan_json(farm_plan), PLAN_GEOJSON: plan_geojson(farm_plan)}
+    text = plan_json(farm_plan)
+    files: dict[str, Content] = {PLAN_JSON: text, PLAN_GEOJSON: plan_geojson(farm_plan)}
     faults: tuple[Fault, ...] = ()
     try:
         files |= {f"{MISSIONS}/{name}": text for name, text in mission_texts(farm_plan).items()}
@@ -75,7 +79,7 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
         files |= {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
     replace_files(folder, files, _earlier(folder))
     names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
-    return Outputs(tuple(names), faults)
+    return Outputs(tuple(names), text, faults)
 
 
 def _earlier(folder: Path) -> list[str]:

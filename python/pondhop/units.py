@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
 Units = Literal["metric", "us"]
@@ -37,8 +36,6 @@ def speed_text(speed_m_s: float, units: Units = "metric") -> str:
 
 def duration_text(duration_s: float) -> str:
     """Return a duration in minutes and seconds, as in ``5 min 50 s``; from an hour on as in ``1 h 05 min``."""
-    if not math.isfinite(duration_s):
-        return "for ever"
     minutes, seconds = divmod(round(duration_s), 60)
     if minutes < 60:
         return f"{minutes} min {seconds:02} s"

@@ -26,6 +26,7 @@ from pondhop.cli.shared import (
 )
 from pondhop.errors import Fault, InvalidInput
 from pondhop.planners import PlainOptions
+from pondhop.units import counted
 
 if TYPE_CHECKING:
     from pondhop.fleet import Fleet, SamplingStyle
@@ -95,7 +96,7 @@ def plan(
         written = outputs.write_outputs(output, farm_plan, has_figure=is_drawn, units=units)
         advance(size=2.0 if is_drawn else 1.0)
     if as_json:
-        typer.echo((output / outputs.PLAN_JSON).read_text(encoding="utf-8"), nl=False)
+        typer.echo(written.plan_json, nl=False)
     else:
         from pondhop.cli import printed
 
@@ -130,10 +131,9 @@ def generate_farm(
     from pondhop.farm.write import write_farm
 
     farm = generate(ponds, at=parse_lonlat("--at", at), seed=seed, missing_share=missing_share, irregular=irregular)
-    output.parent.mkdir(parents=True, exist_ok=True)
     write_farm(output, farm)
     message = {"farm": str(output), "num_ponds": len(farm.ponds)}
-    typer.echo(json.dumps(message) if as_json else f"Written to {output}: {len(farm.ponds)} ponds")
+    typer.echo(json.dumps(message) if as_json else f"Written to {output}: {counted(len(farm.ponds), 'pond')}")
 
 
 def _fleet(num_drones: int | None, path: Path | None, sampling: SamplingStyle | None) -> Fleet:

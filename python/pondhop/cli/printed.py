@@ -46,8 +46,9 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
         overlap, num_crossings = solution.separation.overlap, solution.separation.num_crossings
         on_ways = solution.separation.num_depot_leg_crossings
         console.print(
-            f"Between ponds, routes of different drones cross {counted(num_crossings, 'time')}; {on_ways} more "
-            f"crossings are on their ways out and home. They share {overlap:.1%} of the farm's area."
+            f"Between ponds, routes of different drones cross {counted(num_crossings, 'time')}; "
+            f"{counted(on_ways, 'more crossing')} {'is' if on_ways == 1 else 'are'} on their ways out and home. "
+            f"They share {overlap:.1%} of the farm's area."
         )
     console.print(f"Planner {solution.planner}, seed {solution.seed}, {duration_of_planning(solution.elapsed_s)}.")
     _print_assumptions(console, farm_plan, units)
@@ -149,7 +150,7 @@ class SolvedFarms:
 
 def print_judgements(judgements: Sequence[Judgement]) -> None:
     """Print how the plans of research farms were judged: each farm if they are few, the averages, every violation."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False)
     if len(judgements) <= MAX_ROWS:
         table = Table()
         for heading in ("Farm", "Ponds", "Routes", "Longest", "Total", "Gap", "Overlap", "Crossings"):
@@ -161,7 +162,7 @@ def print_judgements(judgements: Sequence[Judgement]) -> None:
             table.add_row(str(farm.index), str(farm.num_ponds), str(farm.num_routes), *lengths, *quality)
         console.print(table)
     averages = _averages_table(
-        f"{len(judgements)} farms",
+        counted(len(judgements), "farm"),
         [farm.max_route_length for farm in judgements],
         [farm.total_length for farm in judgements],
         [farm.gap_percent for farm in judgements],

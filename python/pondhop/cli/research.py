@@ -23,6 +23,7 @@ from pondhop.cli.shared import (
 )
 from pondhop.errors import Fault, InvalidInput
 from pondhop.planners import PlainOptions
+from pondhop.units import counted
 
 if TYPE_CHECKING:
     from pondhop.files.routes_json import Judgement
@@ -192,12 +193,11 @@ def generate(
 
     drawn = instances.generate(ponds, farms, seed=seed, variant=variant)
     if output is not None:
-        output.parent.mkdir(parents=True, exist_ok=True)
         instances.write_farms(output, drawn)
     if output is None or as_json:
         typer.echo(instances.farms_json(drawn), nl=False)
     else:
-        typer.echo(f"Written to {output}: {farms} farms of {ponds} ponds")
+        typer.echo(f"Written to {output}: {counted(farms, 'farm')} of {counted(ponds, 'pond')}")
 
 
 def _research_farms(path: Path) -> list[ResearchFarm]:

@@ -24,7 +24,7 @@ _OFFSET = 5.0
 """How far below a pond's marker its name stands, in points."""
 
 
-def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) -> int:
+def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) -> None:
     """Write the name of each pond below its sampling point, in order, where neither another name nor a marker is near.
 
     Parameters
@@ -37,11 +37,6 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
         One a position.
     look
         Colours.
-
-    Returns
-    -------
-    int
-        How many names were written.
     """
     letters = lettering(names)
     texts = [letters.written(name).strip() for name in names]
@@ -49,7 +44,6 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
     widths = _FONT_SIZE * _LETTER_WIDTH * np.array([len(text) for text in texts])
     height = _FONT_SIZE * _LINE_HEIGHT
     boxes = _Boxes(points, margin=2.5)
-    num_written = 0
     for index in np.lexsort((points[:, 0], -points[:, 1])):
         text, (x, y) = texts[index], points[index]
         if not text or len(text) > _MAX_LETTERS:
@@ -70,8 +64,6 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
             color=look.ink,
             zorder=5,
         )
-        num_written += 1
-    return num_written
 
 
 def _in_points(ax: Axes, positions: Points) -> Points:

@@ -200,14 +200,13 @@ def plot_clusters(
             linestyle="",
             marker=MARKERS[cycle % 4],
             markersize=marker_size(problem),
-            label=f"{index + 1}: {len(ponds)} ponds",
+            label=f"{index + 1}: {counted(len(ponds), 'pond')}",
             zorder=4,
         )
     draw_depot(ax, problem, look)
     write_legend(ax, look)
-    write_title(
-        ax, f"{problem.num_ponds} ponds, {len(clusters)} clusters", [["convex hulls", "back-and-forth paths"]], look
-    )
+    title = f"{counted(problem.num_ponds, 'pond')}, {counted(len(clusters), 'cluster')}"
+    write_title(ax, title, [["convex hulls", "back-and-forth paths"]], look)
     return ax
 
 
