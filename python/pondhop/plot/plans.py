@@ -10,7 +10,7 @@ import numpy as np
 from pondhop._core import LocalFrame, Problem, evaluate
 from pondhop.palette import ROUTE_COLOURS, route_colour
 from pondhop.plot.canvas import Points, draw_areas, draw_scale_bar, prepared_axes, write_legend, write_title
-from pondhop.plot.look import LOOKS, Theme
+from pondhop.plot.look import LOOKS, Look, Theme
 from pondhop.plot.names import draw_names
 from pondhop.plot.routes import LINE_STYLES, MARKERS, draw_depot, draw_routes, draw_shading_key, marker_size
 from pondhop.solution import FarmPlan
@@ -140,9 +140,7 @@ def plot_solution(
     """
     plan = evaluate(problem, routes)
     look = LOOKS[theme]
-    outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
-    ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *outline]), look)
-    draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
+    ax = _research_axes(problem, boundary, (), ax, look)
     labels = [
         f"{length:.3f}, {counted(len(route), 'pond')}"
         for route, length in zip(plan.routes, plan.route_lengths, strict=True)
@@ -185,10 +183,7 @@ def plot_clusters(
         In the units of the farm.
     """
     look = LOOKS[theme]
-    outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
-    paths = [path for _, _, path in clusters]
-    ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *paths, *outline]), look)
-    draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
+    ax = _research_axes(problem, boundary, [path for _, _, path in clusters], ax, look)
     for index, (ponds, hull, path) in enumerate(clusters):
         colour, cycle = route_colour(index), index // len(ROUTE_COLOURS)
         corners = problem.ponds[hull]
@@ -207,6 +202,16 @@ def plot_clusters(
     write_legend(ax, look)
     title = f"{counted(problem.num_ponds, 'pond')}, {counted(len(clusters), 'cluster')}"
     write_title(ax, title, [["convex hulls", "back-and-forth paths"]], look)
+    return ax
+
+
+def _research_axes(
+    problem: Problem, boundary: Points | None, paths: Sequence[Points], ax: Axes | None, look: Look
+) -> Axes:
+    """Return axes with room for a research farm and paths over it; its outline is drawn."""
+    outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
+    ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *paths, *outline]), look)
+    draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
     return ax
 
 
