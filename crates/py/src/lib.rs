@@ -6,6 +6,7 @@
 mod arguments;
 mod attention;
 mod bound;
+mod effort;
 mod error;
 mod evaluate;
 mod frame;

@@ -1,19 +1,14 @@
 //! `pondhop_core::search`.
 
 use crate::arguments;
+use crate::effort::{check_limits, watched};
 use crate::error::to_python;
 use crate::problem::Problem;
-use pondhop_core::effort::Progress;
 use pondhop_core::plan::Violation;
 use pondhop_core::search::{Goal, Options, solve};
-use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::ops::ControlFlow;
-use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
-
-/// Time between two looks at Python's signals and two calls of the progress callback.
-const REPORT_INTERVAL: Duration = Duration::from_millis(100);
+use std::time::Instant;
 
 /// Minimise the longest route, then the total, by ruin and recreate.
 ///
@@ -86,22 +81,20 @@ pub fn search(
     if let Some(routes) = &start {
         check_start(problem, routes)?;
     }
-    let watcher = Watcher::new(progress, begin);
-    let clock = move || time_limit_s.map_or(0.0, |limit| begin.elapsed().as_secs_f64() / limit);
-    let watch = |report: &Progress| watcher.look(report);
-    let options = Options {
-        seed,
-        max_iterations: iterations,
-        clock: time_limit_s.is_some().then_some(&clock),
-        watch: Some(&watch),
-        num_threads: threads,
-        goal,
-        slack,
-        start: start.as_deref(),
-    };
-    let (outcome, elapsed) = py.detach(|| (solve(&problem.inner, &options), begin.elapsed()));
-    let is_interrupted = watcher.into_outcome()?;
-    Ok((outcome.routes, elapsed.as_secs_f64(), outcome.num_iterations, is_interrupted))
+    let (outcome, elapsed_s, is_interrupted) = watched(py, begin, time_limit_s, progress, |clock, watch| {
+        let options = Options {
+            seed,
+            max_iterations: iterations,
+            clock,
+            watch,
+            num_threads: threads,
+            goal,
+            slack,
+            start: start.as_deref(),
+        };
+        solve(&problem.inner, &options)
+    })?;
+    Ok((outcome.routes, elapsed_s, outcome.num_iterations, is_interrupted))
 }
 
 fn check_effort(time_limit_s: Option<f64>, iterations: Option<u64>, threads: usize, slack: f64) -> PyResult<()> {
@@ -118,13 +111,6 @@ fn check_effort(time_limit_s: Option<f64>, iterations: Option<u64>, threads: usi
     Err(PyValueError::new_err(complaint))
 }
 
-pub fn check_limits(time_limit_s: Option<f64>, iterations: Option<u64>) -> PyResult<()> {
-    if time_limit_s.is_some_and(|limit| limit.is_nan() || limit <= 0.0) || iterations == Some(0) {
-        return Err(PyValueError::new_err("time_limit_s and iterations are above 0"));
-    }
-    Ok(())
-}
-
 /// Beyond this a mistyped number would exhaust the machine.
 const MAX_THREADS: usize = 1024;
 
@@ -136,50 +122,5 @@ fn check_start(problem: &Problem, routes: &[Vec<usize>]) -> PyResult<()> {
     match plan.violations.iter().find(|violation| !is_limit(violation)) {
         Some(violation) => Err(PyValueError::new_err(format!("start: {violation}"))),
         None => Ok(()),
-    }
-}
-
-/// Looks at Python now and then while a planner runs without the GIL.
-pub struct Watcher {
-    progress: Option<Py<PyAny>>,
-    last: Mutex<Instant>,
-    /// Whether Ctrl-C ended the search, or what the callback raised.
-    outcome: Mutex<PyResult<bool>>,
-}
-
-impl Watcher {
-    pub fn new(progress: Option<Py<PyAny>>, begin: Instant) -> Self {
-        Self { progress, last: Mutex::new(begin), outcome: Mutex::new(Ok(false)) }
-    }
-
-    /// Whether Ctrl-C ended the planner, or what the callback raised.
-    pub fn into_outcome(self) -> PyResult<bool> {
-        self.outcome.into_inner().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub fn look(&self, report: &Progress) -> ControlFlow<()> {
-        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        if last.elapsed() < REPORT_INTERVAL {
-            return ControlFlow::Continue(());
-        }
-        *last = Instant::now();
-        let seen = Python::attach(|py| match py.check_signals() {
-            Ok(()) => self.call_back(py, report).map(|()| false),
-            Err(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => Ok(true),
-            Err(error) => Err(error),
-        });
-        if matches!(seen, Ok(false)) {
-            return ControlFlow::Continue(());
-        }
-        *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = seen;
-        ControlFlow::Break(())
-    }
-
-    fn call_back(&self, py: Python<'_>, report: &Progress) -> PyResult<()> {
-        // Before the first plan there is nothing to tell.
-        let Some(progress) = self.progress.as_ref().filter(|_| report.max_route_cost.is_finite()) else {
-            return Ok(());
-        };
-        progress.call1(py, (report.max_route_cost, report.num_iterations, report.share)).map(|_| ())
     }
 }

@@ -1,8 +1,7 @@
 //! `pondhop_core::territory`.
 
+use crate::effort::{check_limits, watched};
 use crate::problem::Problem;
-use crate::search::{Watcher, check_limits};
-use pondhop_core::effort::Progress;
 use pondhop_core::territory::{Options, plan};
 use pyo3::prelude::*;
 use std::time::Instant;
@@ -47,15 +46,7 @@ pub fn territory(
 ) -> PyResult<(Vec<Vec<usize>>, f64, bool)> {
     let begin = Instant::now();
     check_limits(time_limit_s, iterations)?;
-    let watcher = Watcher::new(progress, begin);
-    let clock = move || time_limit_s.map_or(0.0, |limit| begin.elapsed().as_secs_f64() / limit);
-    let watch = |report: &Progress| watcher.look(report);
-    let options = Options {
-        seed,
-        max_iterations: iterations,
-        clock: time_limit_s.is_some().then_some(&clock),
-        watch: Some(&watch),
-    };
-    let (routes, elapsed) = py.detach(|| (plan(&problem.inner, &options), begin.elapsed()));
-    Ok((routes, elapsed.as_secs_f64(), watcher.into_outcome()?))
+    watched(py, begin, time_limit_s, progress, |clock, watch| {
+        plan(&problem.inner, &Options { seed, max_iterations: iterations, clock, watch })
+    })
 }
