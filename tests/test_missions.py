@@ -12,10 +12,9 @@ from typing import Any
 import pytest
 
 from hand_made import DEPOT, make_farm, make_plan, square, two_drones
-from pondhop import InvalidInput
-from pondhop.errors import Fault
+from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm, Pond
-from pondhop.fleet import Fleet
+from pondhop.fleet import Fleet, SamplingStyle
 from pondhop.missions import write_missions
 from pondhop.missions.autopilots import ARDUPILOT
 from pondhop.missions.check import broken_rules
@@ -563,3 +562,65 @@ def assert_same(found: Any, expected: MavlinkItem) -> None:
     assert found.z == height
     for param, value in zip((found.param1, found.param2, found.param3, found.param4), expected.params, strict=False):
         assert param == value or (value is None and (math.isnan(param) or param == 0))
+
+
+def time_at_ponds_s(mission: Mission) -> dict[str, float]:
+    """Time on station at each pond as the items of a mission say it, by the measured laws: nothing of the fleet."""
+    times: dict[str, float] = dict.fromkeys((item.pond_id for item in mission.items if item.pond_id), 0.0)
+    height_m = 7.0
+    for item in mission.items:
+        if item.pond_id is None:
+            continue
+        if item.action is Action.WAYPOINT and item.height_m is not None:
+            change_m, height_m = item.height_m - height_m, item.height_m
+            times[item.pond_id] += change_m / 2.5 if change_m > 0 else -change_m / 1.5
+            times[item.pond_id] += item.hold_s + (4.54 if item.height_m == 2.0 else 0.0)
+        elif item.action is Action.LAND:
+            times[item.pond_id] += 7.0 / 0.5 + 3.1
+        elif item.action is Action.DELAY:
+            times[item.pond_id] += item.hold_s
+        elif item.action is Action.TAKEOFF:
+            times[item.pond_id] += 4.0 + 7.0 / 2.5
+    return times
+
+
+@pytest.mark.parametrize("sampling", ["hover-dip", "splashdown"])
+def test_a_ponds_own_time_on_station_is_flown_as_planned(sampling: SamplingStyle, tmp_path: Path) -> None:
+    own_s = (None, 25.0, 30.4, 1000.7, 60.0)
+    ponds = tuple(replace(pond, service_s=own) for pond, own in zip(make_farm().ponds, own_s, strict=True))
+    farm_plan = make_plan(make_farm(ponds=ponds), Fleet(1, sampling=sampling), [[0, 1, 2, 3, 4]])
+    plan, mission = farm_plan.solution.plan, build_mission(0, farm_plan.farm, farm_plan.fleet, [0, 1, 2, 3, 4])
+    planned = plan.departures_s[0] - plan.arrivals_s[0]
+    assert list(time_at_ponds_s(mission).values()) == pytest.approx(planned)
+    for pond, planned_s in zip(ponds, planned, strict=True):
+        assert pond.service_s is None or planned_s == pytest.approx(pond.service_s, abs=0.5)
+    write_missions(tmp_path, farm_plan)
+    text = " ".join((tmp_path / "README.txt").read_text().split())
+    longest_s = farm_plan.fleet.dwell_at(1000.7)
+    assert f"of these {longest_s:g} s of sampling, at: P3." in text
+    if sampling == "splashdown":
+        assert "DISARM_DELAY 0:" in text
+
+
+def test_the_wait_before_disarming_covers_the_longest_stay(tmp_path: Path) -> None:
+    ponds = (*make_farm().ponds[:-1], replace(make_farm().ponds[-1], service_s=40.0))
+    fleet = Fleet(2, sampling="splashdown")
+    write_missions(tmp_path, make_plan(make_farm(ponds=ponds), fleet, [[0, 1, 2], [3, 4]]))
+    assert parameters(tmp_path / "drone-1.param")["DISARM_DELAY"] == 2 * 5 + 30
+    assert parameters(tmp_path / "drone-2.param")["DISARM_DELAY"] == 2 * fleet.dwell_at(40.0) + 30 > 40
+
+
+@pytest.mark.parametrize(("sampling", "least_s"), [("hover-dip", 9.9), ("splashdown", 24.9)])
+def test_less_time_on_station_than_sampling_takes_is_a_fault(sampling: SamplingStyle, least_s: float) -> None:
+    ponds = make_farm().ponds
+
+    def plan_with(*own_s: float) -> FarmPlan:
+        changed = tuple(replace(pond, service_s=own) for pond, own in zip(ponds, own_s, strict=False))
+        farm = make_farm(ponds=changed + ponds[len(own_s) :])
+        return make_plan(farm, Fleet(1, sampling=sampling), [[0, 1, 2, 3, 4]])
+
+    assert plan_with(least_s).solution.plan.is_feasible
+    for own_s, place in (((least_s, least_s - 0.1), "pond P1"), ((0.0, 0.5), "ponds P0, P1")):
+        with pytest.raises(InvalidInput, match=f"^{place}: service_s is .* takes {least_s:g} s at least") as caught:
+            plan_with(*own_s)
+        assert len(caught.value.faults) == 1

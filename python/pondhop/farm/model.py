@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from pondhop._core import LocalFrame, Problem
+from pondhop.errors import Fault, InvalidInput
+from pondhop.farm.features import listed
 from pondhop.fleet import Fleet
 from pondhop.places import Area, LonLat
+
+_ROUNDING_S = 1e-6
 
 
 @dataclass(frozen=True)
@@ -85,16 +91,22 @@ class Farm:
         Parameters
         ----------
         fleet
-            The drones; its time on station applies to every pond without its own.
+            The drones; its time on station applies to every pond without its own. A pond's own is rounded to whole
+            seconds of dwell, as it is flown.
 
         Returns
         -------
         Problem
             Pond i is ``ponds[i]``.
+
+        Raises
+        ------
+        InvalidInput
+            With the ponds whose own time on station is less than what sampling takes.
         """
+        _check_service(self.ponds, fleet)
         sampling_points = np.array([pond.sampling_point for pond in self.ponds], dtype=np.float64)
-        service_s = fleet.service_s
-        durations_s = [service_s if pond.service_s is None else pond.service_s for pond in self.ponds]
+        durations_s = [fleet.service_at(pond.service_s) for pond in self.ponds]
         return Problem(
             (0.0, 0.0),
             LocalFrame(*self.depot).to_local(sampling_points),
@@ -110,3 +122,17 @@ class Farm:
             max_length_m=np.inf if fleet.max_route_length_m is None else fleet.max_route_length_m,
             max_duration_s=np.inf if fleet.max_route_duration_s is None else fleet.max_route_duration_s,
         )
+
+
+def _check_service(ponds: Sequence[Pond], fleet: Fleet) -> None:
+    least_s = fleet.least_service_s
+    short = {pond.id: pond.service_s for pond in ponds if pond.service_s is not None}
+    short = {name: service_s for name, service_s in short.items() if service_s < least_s - _ROUNDING_S}
+    if short:
+        # Rounded up, so that whoever gives the number that is told gives enough.
+        least = f"{math.ceil(10 * (least_s - _ROUNDING_S)) / 10:g} s"
+        values = listed([f"{value:g} s" for value in sorted(set(short.values()))], 3)
+        place = f"{'pond' if len(short) == 1 else 'ponds'} {listed(short)}"
+        message = f"service_s is {values}, and {fleet.sampling} takes {least} at least"
+        action = f"give {least} or more, from arriving above the pond to leaving from there, or leave service_s out"
+        raise InvalidInput([Fault(place, message, action)])

@@ -137,6 +137,27 @@ class Fleet:
         return times.sampling_s(self)
 
     @property
+    def least_service_s(self) -> float:
+        """The least time on station at one pond: down, up, and on the water the second that autopilots need."""
+        return self.service_s - self.dwell_s + (1.0 if self.sampling == "splashdown" else 0.0)
+
+    def dwell_at(self, service_s: float | None) -> float:
+        """Return how long the probe stays in the water, in whole seconds, at a pond with this time on station.
+
+        Parameters
+        ----------
+        service_s
+            What the pond says; `None`: nothing, and the fleet's dwell counts.
+        """
+        if service_s is None:
+            return self.dwell_s
+        return max(0.0, float(round(service_s - (self.service_s - self.dwell_s))))
+
+    def service_at(self, service_s: float | None) -> float:
+        """Return the time on station as it is flown, with `dwell_at` whole seconds in the water."""
+        return self.service_s - self.dwell_s + self.dwell_at(service_s)
+
+    @property
     def way_home_fixed_s(self) -> float:
         """What the way home takes besides its length, for the drone that comes home highest."""
         return times.way_home_fixed_s(self)

@@ -133,7 +133,8 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
         if getattr(fleet, setting) != getattr(Fleet, setting)
     ]
     if fleet.sampling == "splashdown":
-        stays_s = 2 * fleet.dwell_s + 30
+        route = farm_plan.solution.plan.routes[drone]
+        stays_s = 2 * max(fleet.dwell_at(farm.ponds[pond].service_s) for pond in route) + 30
         delay_s = math.ceil(stays_s) if stays_s <= MAX_DISARM_DELAY_S else 0
         found += [
             Parameter("MIS_OPTIONS", 4, "bit 2: without it a drone ends on the first pond; add other bits", "int16"),

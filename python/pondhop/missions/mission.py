@@ -124,7 +124,7 @@ def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int]) ->
 
 
 def _sampling_items(pond: Pond, fleet: Fleet, height_m: float) -> list[MissionItem]:
-    position, dwell_s = _rounded_position(pond.sampling_point), _rounded(fleet.dwell_s)
+    position, dwell_s = _rounded_position(pond.sampling_point), _rounded(fleet.dwell_at(pond.service_s))
     arrival = MissionItem(Action.WAYPOINT, position, height_m, pond_id=pond.id)
     if fleet.sampling == "hover-dip":
         dip = MissionItem(Action.WAYPOINT, position, _rounded(fleet.dip_height_m), hold_s=dwell_s, pond_id=pond.id)

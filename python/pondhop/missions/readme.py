@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from textwrap import fill
 
 from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation, Parameter
@@ -118,7 +119,21 @@ def _knowledge(farm_plan: FarmPlan) -> list[str]:
     return [
         f"Planned: {speed_text(fleet.speed_m_s)}, {height_text(fleet.transit_height_m)} above the depot between ponds, "
         f"{fleet.service_s:.0f} s at a pond, of these {fleet.dwell_s:g} s of sampling.",
+        *_own_times(farm_plan),
         "Heights are above the depot; the ground is taken to be flat.",
         f"The way home (RTL) is flown at {speed_text(fleet.return_speed_m_s)}, at the height of each drone above.",
         *farm_plan.notes,
+    ]
+
+
+def _own_times(farm_plan: FarmPlan) -> list[str]:
+    """Ponds with a time on station of their own, those of the same time together."""
+    fleet, names = farm_plan.fleet, defaultdict[float, list[str]](list)
+    for pond in farm_plan.farm.ponds:
+        if pond.service_s is not None:
+            names[pond.service_s].append(pond.id)
+    return [
+        f"  {fleet.service_at(service_s):.0f} s, of these {fleet.dwell_at(service_s):g} s of sampling, at: "
+        f"{', '.join(names[service_s])}."
+        for service_s in sorted(names)
     ]
