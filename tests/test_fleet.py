@@ -136,15 +136,28 @@ def test_the_reserve_is_taken_once() -> None:
 
 
 def test_drones_come_home_in_layers_of_their_own() -> None:
-    assert [Fleet(4).return_height_of(drone) for drone in range(4)] == [15.0, 18.0, 21.0, 24.0]
+    layers = Fleet(4).layers(10)
+    assert [layers.way_home_height_m(drone) for drone in range(4)] == [15.0, 18.0, 21.0, 24.0]
+    assert [layers.way_out_height_m(drone) for drone in range(3)] == [7.0, 10.0, 13.0]
     # No autopilot descends for the way home, and any number of drones fits below the highest allowed flight.
-    assert Fleet(2, transit_height_m=30.0).return_height_of(0) == 30.0
-    assert Fleet(100).return_height_of(99) == pytest.approx(121.9)
-    assert Fleet(2, layer_spacing_m=0.0).return_height_of(1) == 15.0
-    # The plan counts with the highest layer: 3 m more take 3 / 2.5 s up and 3 / 1.5 s down.
-    assert Fleet(2).way_home_fixed_s - Fleet(1).way_home_fixed_s == pytest.approx(3 / 2.5 + 3 / 1.5)
-    assert Fleet(2).takeoff_s - Fleet(1).takeoff_s == pytest.approx(3 / 2.5 + 3 / 1.5)
-    assert [Fleet(3).way_out_height_of(drone) for drone in range(3)] == [7.0, 10.0, 13.0]
+    assert Fleet(2, transit_height_m=30.0).layers(2).way_home_m == 30.0
+    assert Fleet(100).layers(100).way_home_height_m(99) == pytest.approx(121.9)
+    assert Fleet(2, layer_spacing_m=0.0).layers(2).way_home_height_m(1) == 15.0
+    # Drones that cannot fly for want of ponds need no layers.
+    assert Fleet(100).layers(4) == Fleet(4).layers(4)
+    assert len(Fleet(100).layer_costs(4)) == 4
+
+
+def test_each_layer_costs_a_climb_and_a_descent_each_way() -> None:
+    fleet = Fleet(3)
+    costs = fleet.layer_costs(5)
+    assert costs[0][:2] == (fleet.takeoff_s, fleet.way_home_fixed_s)
+    assert costs[0][2:] == (fleet.energy.takeoff_j, fleet.energy.way_home_fixed_j)
+    for drone in (1, 2):
+        # 3 m more take 3 / 2.5 s up and 3 / 1.5 s down.
+        assert [cost - lowest for cost, lowest in zip(costs[drone][:2], costs[0][:2], strict=True)] == pytest.approx(
+            [drone * (3 / 2.5 + 3 / 1.5)] * 2
+        )
 
 
 def test_every_setting_has_a_range_and_a_source() -> None:

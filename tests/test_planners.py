@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 import pondhop
+from hand_made import make_farm
 from pondhop import InvalidInput, Problem, _core
+from pondhop.farm.made_up import generate_farm
+from pondhop.fleet import Fleet
 from pondhop.planners import PLANNERS, OptionFields, Options
 
 
@@ -147,3 +150,44 @@ def test_the_options_are_the_fields_of_effort() -> None:
     assert get_type_hints(OptionFields) == get_type_hints(Options)
     with pytest.raises(TypeError, match="speed"):
         pondhop.solve(Problem((0.0, 0.0), np.array([[0.0, 1.0]]), 1), speed=3)  # type: ignore[call-arg]
+
+
+def test_drones_that_stay_at_home_cost_nothing() -> None:
+    farm = make_farm(ponds=make_farm().ponds[:1])
+    alone = pondhop.plan(farm, Fleet(1, battery_wh=25)).solution.plan
+    assert alone.is_feasible
+    for num_drones in (2, 5, 36, 10_000):
+        assert pondhop.plan(farm, Fleet(num_drones, battery_wh=25)).solution.plan == alone
+
+
+def test_each_drone_takes_as_long_as_its_own_layer() -> None:
+    farm, fleet = make_farm(), Fleet(4)
+    plan = pondhop.plan(farm, fleet).solution.plan
+    assert len(plan.routes) > 2
+    for drone, route in enumerate(plan.routes):
+        # A fleet of one that comes home that much higher, and what the way out takes more: up, and down at its pond.
+        higher = Fleet(1, return_height_m=15.0 + 3.0 * drone)
+        alone = pondhop.evaluate(farm.to_problem(higher), [route])
+        way_out_s = 3.0 * drone * (1 / 2.5 + 1 / 1.5)
+        assert plan.route_durations_s[drone] == pytest.approx(alone.route_durations_s[0] + way_out_s)
+    lowest_s = pondhop.evaluate(farm.to_problem(fleet).replace(layers=None), plan.routes).route_durations_s
+    assert list(lowest_s) == sorted(lowest_s, reverse=True)
+
+
+@pytest.mark.parametrize("battery_wh", [45.0, 70.0])
+@pytest.mark.parametrize("planner", ["auto", "hpp"])
+def test_the_number_of_drones_that_is_told_is_enough(battery_wh: float, planner: str) -> None:
+    farm = generate_farm(24, at=(-90.9, 33.4), seed=4)
+    feasible = []
+    for num_drones in (1, 2, 3, 5, 8, 12):
+        farm_plan = pondhop.plan(farm, Fleet(num_drones, battery_wh=battery_wh), planner=planner, iterations=9_000)
+        feasible.append(farm_plan.is_feasible)
+        needed = farm_plan.num_drones_needed
+        if needed is not None:
+            assert not farm_plan.is_feasible
+            assert pondhop.plan(farm, Fleet(needed, battery_wh=battery_wh), iterations=9_000).is_feasible
+        elif not farm_plan.is_feasible:
+            assert all("fly with" not in found.remedy for found in farm_plan.violations)
+    if planner == "auto":
+        # More drones are never worse than fewer.
+        assert feasible == sorted(feasible)

@@ -50,6 +50,7 @@ class Problem:
         way_home_fixed_s: float = 0.0,
         service_energies_j: ArrayLike | None = None,
         energy: Energy | None = None,
+        layers: ArrayLike | None = None,
     ) -> Self: ...
     def replace(
         self,
@@ -67,6 +68,7 @@ class Problem:
         way_home_fixed_s: float = ...,
         service_energies_j: ArrayLike | None = ...,
         energy: Energy | None = ...,
+        layers: ArrayLike | None = ...,
     ) -> Problem: ...
     @property
     def depot(self) -> NDArray[np.float64]: ...
@@ -96,6 +98,9 @@ class Problem:
     def service_energies_j(self) -> NDArray[np.float64]: ...
     @property
     def energy(self) -> Energy: ...
+    # Shape (k, 4): seconds of take-off and way home, joules of both, for route i in row i.
+    @property
+    def layers(self) -> NDArray[np.float64]: ...
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
 
 _ViolationKind = Literal["unserved", "repeated", "too_many_routes", "too_long", "too_slow", "too_much_energy"]

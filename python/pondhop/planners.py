@@ -15,8 +15,10 @@ from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
 
+import numpy as np
+
 from pondhop import _core, missions
-from pondhop._core import Problem
+from pondhop._core import Energy, Problem
 from pondhop.errors import Fault, InvalidInput
 from pondhop.solution import FarmPlan, FarmViolation, Solution
 
@@ -46,6 +48,9 @@ STEPS_PER_POND_OF_SIZING = 500
 
 LIMIT_KINDS = ("too_long", "too_slow", "too_much_energy")
 """Violations that more drones may cure."""
+
+ADVISED = ("auto", "search", "territory")
+"""Planners that keep the limits of a route wherever they find a plan that does."""
 
 _LIMIT_NAMES = {
     "too_long": "max_route_length_m",
@@ -351,11 +356,11 @@ def solve(
     if chosen is None or faults:
         raise InvalidInput(faults)
     cpu_start_s = time.process_time()
-    planned = chosen.run(problem, wishes)
+    planned = chosen.run(_levelled(problem, problem.layers.max(axis=0, initial=0.0)), wishes)
     cpu_s = time.process_time() - cpu_start_s
     return Solution(
         problem=problem,
-        plan=_core.evaluate(problem, planned.routes),
+        plan=_core.evaluate(problem, _hungriest_lowest(problem, planned.routes)),
         planner=chosen.name,
         seed=wishes.seed,
         elapsed_s=planned.elapsed_s,
@@ -400,8 +405,8 @@ def plan(
     beyond: tuple[FarmViolation, ...] = ()
     if any(violation.kind in LIMIT_KINDS for violation in solution.plan.violations):
         beyond = tuple(_ponds_beyond_reach(farm, solution))
-        if not beyond:
-            farm_plan = replace(farm_plan, num_drones_needed=drones_needed(problem, seed=solution.seed))
+        if not beyond and not solution.is_interrupted:
+            farm_plan = _with_enough_drones(farm_plan, Options(**options))
     return replace(farm_plan, obstacles=(*beyond, *missions.obstacles(farm_plan)))
 
 
@@ -415,35 +420,81 @@ def _ponds_beyond_reach(farm: Farm, solution: Solution) -> Iterator[FarmViolatio
             yield FarmViolation("out_of_reach", message, remedy, None, pond, violation.value, violation.limit)
 
 
-def drones_needed(problem: Problem, *, seed: int = 1) -> int:
-    """Return how many drones keep every limit of a route: the fewest that short searches find a plan for.
+def _levelled(problem: Problem, costs: Sequence[float]) -> Problem:
+    """Return a problem for planners, who take all drones for equal: take-off and way home take the same for all."""
+    if not len(problem.layers):
+        return problem
+    takeoff_s, way_home_s, takeoff_j, way_home_j = map(float, costs)
+    _, energy = problem.energy.__getnewargs_ex__()
+    energy |= {"takeoff_j": takeoff_j, "way_home_fixed_j": way_home_j}
+    return problem.replace(takeoff_s=takeoff_s, way_home_fixed_s=way_home_s, energy=Energy(**energy), layers=None)
 
-    Parameters
-    ----------
-    problem
-        Its own number of drones is the least that is tried.
-    seed
-        Of the searches.
 
-    Returns
-    -------
-    int
-        At most one a pond: that many are enough wherever any number is.
+def _hungriest_lowest(problem: Problem, routes: Routes) -> Routes:
+    """Return routes in an order in which those nearest to a limit are flown in the lowest layers.
+
+    Every metre of height takes the same from each of them, so no other order keeps more of them within one limit.
+    Where there is none, or energies are unknown, the routes that take longest come first.
     """
-    num_ponds = problem.num_ponds
+    if not len(problem.layers):
+        return routes
+    plan = _core.evaluate(problem.replace(layers=None), routes)
+    shares = np.maximum(
+        plan.route_energies_j / problem.energy.usable_j, plan.route_durations_s / problem.max_duration_s
+    )
+    order = np.lexsort((-plan.route_durations_s, -shares))
+    return [plan.routes[index] for index in order]
 
-    def is_enough(num_drones: int) -> bool:
-        wider = problem.replace(num_drones=num_drones)
-        routes, *_ = _core.search(wider, seed=seed, iterations=STEPS_PER_POND_OF_SIZING * num_ponds)
-        return _core.evaluate(wider, routes).is_feasible
 
-    too_few, enough = problem.num_drones - 1, problem.num_drones
-    while enough < num_ponds and not is_enough(enough):
-        too_few, enough = enough, min(2 * enough, num_ponds)
-    while enough - too_few > 1:
+def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
+    """Return a plan that breaks a limit with the number of drones that keeps all, or one by which as many drones do.
+
+    Every number is tried as it would be flown, each drone in its layer, and the first with a plan that keeps every
+    limit is told: whoever follows the advice comes here again with that number, and gets that plan.
+    """
+    farm, fleet, solution = farm_plan.farm, farm_plan.fleet, farm_plan.solution
+    is_separate = options.has_separate_airspace or solution.planner == "territory"
+
+    def found(num_drones: int) -> Solution | None:
+        try:
+            problem = farm.to_problem(replace(fleet, num_drones=num_drones))
+        except InvalidInput:
+            return None
+        for costs in (problem.layers.min(axis=0), problem.layers.max(axis=0)):
+            levelled = _levelled(problem, costs)
+            routes = _sized(levelled, options, is_separate)
+            plan = _core.evaluate(problem, _hungriest_lowest(problem, routes))
+            if plan.is_feasible:
+                return replace(solution, problem=problem, plan=plan)
+            if not _core.evaluate(levelled, routes).is_feasible:
+                # Not even if all could fly lowest; higher up there is less to be had.
+                return None
+        return None
+
+    most = max(fleet.num_drones, len(farm.ponds))
+    too_few, enough = fleet.num_drones - 1, fleet.num_drones
+    best = found(enough)
+    while best is None and enough < most:
+        too_few, enough = enough, min(max(enough + 1, enough * 5 // 4), most)
+        best = found(enough)
+    while best is not None and enough - too_few > 1:
         middle = (too_few + enough) // 2
-        too_few, enough = (too_few, middle) if is_enough(middle) else (middle, enough)
-    return enough
+        fewer = found(middle)
+        too_few, enough, best = (too_few, middle, fewer) if fewer else (middle, enough, best)
+    if best is None:
+        return farm_plan
+    if enough == fleet.num_drones and solution.planner in ADVISED:
+        separation = _core.separation(best.problem, best.plan.routes)
+        return replace(farm_plan, solution=replace(best, separation=separation))
+    return replace(farm_plan, num_drones_needed=enough)
+
+
+def _sized(problem: Problem, options: Options, is_separate: bool) -> Routes:
+    """Return the routes of a short search."""
+    steps = STEPS_PER_POND_OF_SIZING * problem.num_ponds
+    if is_separate:
+        return _core.territory(problem, seed=options.seed, iterations=steps)[0]
+    return _core.search(problem, seed=options.seed, iterations=steps, objective=options.objective)[0]
 
 
 def _faults(options: Options, problem: Problem) -> list[Fault]:

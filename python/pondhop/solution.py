@@ -14,8 +14,11 @@ from pondhop import _core
 from pondhop._core import Plan, Problem, Separation, Violation, evaluate
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
+from pondhop.fleet.layers import Layers
 from pondhop.palette import route_colour
 from pondhop.units import counted, duration_text, energy_text, length_text
+
+NO_NUMBER = "no number of drones is known to keep it"
 
 
 @dataclass(frozen=True)
@@ -68,9 +71,9 @@ class Solution:
 
     @cached_property
     def alone(self) -> Plan:
-        """The plan in which every pond is the only one of its route: what sampling it takes at least."""
+        """The plan in which every pond is the only one of its route, flown lowest: what sampling it takes at least."""
         num_ponds = self.problem.num_ponds
-        return evaluate(self.problem.replace(num_drones=num_ponds), [[pond] for pond in range(num_ponds)])
+        return evaluate(self.problem.replace(num_drones=num_ponds, layers=None), [[pond] for pond in range(num_ponds)])
 
     @property
     def gap_percent(self) -> float | None:
@@ -171,6 +174,11 @@ class FarmPlan:
         return not self.violations
 
     @property
+    def layers(self) -> Layers:
+        """At which heights the drones fly out to their first pond and come home."""
+        return self.fleet.layers(len(self.farm.ponds))
+
+    @property
     def takeoff_times_s(self) -> tuple[float, ...]:
         """When each drone takes off, in seconds after the first: some time apart, so that none meets another."""
         return tuple(drone * self.fleet.takeoff_interval_s for drone in range(len(self.solution.plan.routes)))
@@ -260,8 +268,9 @@ class FarmPlan:
     @property
     def _more_drones(self) -> str:
         if self.num_drones_needed is None:
-            return "use more drones, or leave ponds out"
-        return f"fly with {self.num_drones_needed} drones, or leave ponds out"
+            return f"leave ponds out, or raise the limit if the drones can do it; {NO_NUMBER}"
+        planned = "" if self.solution.planner in ("auto", "search", "territory") else ", planned by auto"
+        return f"fly with {self.num_drones_needed} drones{planned}, or leave ponds out"
 
 
 _MAP_WIDTH = 420.0

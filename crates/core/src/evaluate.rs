@@ -5,22 +5,23 @@
 
 use crate::error::{Faults, InvalidInput};
 use crate::plan::{Plan, Route, Stop, Violation};
-use crate::problem::Problem;
+use crate::problem::{Problem, VehicleType};
 use crate::travel::{Leg, LegKind};
 
 /// How far beyond a limit rounding may carry a length or duration before it counts as a violation, relative to the limit.
 const TOLERANCE: f64 = 1e-9;
 
 /// Flies `routes` (visit indices in flying order, the depot implied at both ends) and reports lengths, schedule,
-/// energy and violations. Empty routes are dropped.
+/// energy and violations. Empty routes are dropped; where drones fly in layers, route i of the rest has layer i.
 ///
 /// # Errors
 /// [`InvalidInput`] if a route names a visit that does not exist. A plan that breaks a rule is not an error: see
 /// [`Plan::violations`].
 pub fn evaluate(problem: &Problem, routes: &[Vec<usize>]) -> Result<Plan, InvalidInput> {
     check_indices(problem, routes)?;
-    let flown: Vec<Route> =
-        routes.iter().filter(|visits| !visits.is_empty()).map(|visits| fly(problem, visits)).collect();
+    let flown: Vec<Route> = (routes.iter().filter(|visits| !visits.is_empty()).enumerate())
+        .map(|(index, visits)| fly(problem, visits, &problem.drone_of(index)))
+        .collect();
     let mut violations = count_violations(problem, &flown);
     violations.extend(limit_violations(problem, &flown));
     Ok(Plan { routes: flown, violations })
@@ -40,15 +41,14 @@ pub(crate) fn check_indices(problem: &Problem, routes: &[Vec<usize>]) -> Result<
     faults.into_result(())
 }
 
-fn fly(problem: &Problem, visits: &[usize]) -> Route {
-    let vehicle_type = problem.vehicle_type();
+fn fly(problem: &Problem, visits: &[usize], vehicle_type: &VehicleType) -> Route {
     let depot = problem.depot().position;
     let (mut position, mut kind) = (depot, LegKind::First);
     let (mut length, mut clock, mut energy) = (0.0, 0.0, 0.0);
     let mut stops = Vec::with_capacity(visits.len());
     for &index in visits {
         let visit = problem.visits()[index];
-        let leg = Leg::new(position, visit.position, kind, &vehicle_type);
+        let leg = Leg::new(position, visit.position, kind, vehicle_type);
         (position, kind) = (visit.position, LegKind::Between);
         length += leg.length;
         energy += leg.energy + visit.service_energy;
@@ -56,7 +56,7 @@ fn fly(problem: &Problem, visits: &[usize]) -> Route {
         clock = arrival + visit.service_duration;
         stops.push(Stop { visit: index, leg, arrival, departure: clock, service_energy: visit.service_energy });
     }
-    let last_leg = Leg::new(position, depot, LegKind::Last, &vehicle_type);
+    let last_leg = Leg::new(position, depot, LegKind::Last, vehicle_type);
     length += last_leg.length;
     Route { stops, last_leg, length, duration: clock + last_leg.duration, energy: energy + last_leg.energy }
 }
@@ -132,6 +132,30 @@ mod tests {
             },
             ..drones(2)
         }
+    }
+
+    #[test]
+    fn every_route_is_flown_in_its_own_layer() {
+        use crate::problem::Layer;
+        let layer = |takeoff_duration, way_home_duration| Layer {
+            takeoff_duration,
+            way_home_duration,
+            takeoff_energy: 100.0 * takeoff_duration,
+            way_home_energy: 100.0 * way_home_duration,
+        };
+        let plain = rectangle(VehicleType { num_available: 3, ..measured_drones() });
+        let layered = plain.clone().with_layers(vec![layer(9.0, 44.0), layer(11.0, 47.0)]).unwrap();
+        let routes = [vec![0], vec![], vec![1], vec![2]];
+        let (low, own) = (evaluate(&plain, &routes).unwrap(), evaluate(&layered, &routes).unwrap());
+        // Routes beyond the last layer have the last: 2 s more on the way out and 3 s more on the way home.
+        let longer: Vec<f64> =
+            low.routes.iter().zip(&own.routes).map(|(low, own)| own.duration - low.duration).collect();
+        assert_eq!(longer, [0.0, 5.0, 5.0]);
+        assert_eq!(own.routes[0].energy, low.routes[0].energy + 900.0 - 2000.0 + 4400.0 - 15_000.0);
+        assert_eq!(own.routes[1].energy, low.routes[1].energy + 1100.0 - 2000.0 + 4700.0 - 15_000.0);
+        assert!(rectangle(drones(2)).with_layers(vec![layer(9.0, 44.0)]).is_err());
+        let error = plain.with_layers(vec![layer(9.0, f64::NAN)]).unwrap_err();
+        assert_eq!(error.faults[0].path, "layers[0].way_home_duration");
     }
 
     #[test]

@@ -115,12 +115,27 @@ impl VehicleType {
     }
 }
 
+/// What the first and the last leg of one route take besides their length, where each drone flies them at a height of its
+/// own; in place of what its vehicle type says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    /// As [`VehicleType::takeoff_duration`].
+    pub takeoff_duration: f64,
+    /// As [`WayHome::fixed_duration`].
+    pub way_home_duration: f64,
+    /// As [`Energy::takeoff_energy`].
+    pub takeoff_energy: f64,
+    /// As [`Energy::way_home_fixed_energy`].
+    pub way_home_energy: f64,
+}
+
 /// A depot, the visits and the fleet: validated, immutable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     depot: Depot,
     visits: Vec<Visit>,
     vehicle_type: VehicleType,
+    layers: Vec<Layer>,
 }
 
 impl Problem {
@@ -143,7 +158,57 @@ impl Problem {
             ENERGY.check(&mut faults, || format!("visits[{index}].service_energy"), visit.service_energy);
         }
         check_vehicle_type(&mut faults, &vehicle_type);
-        faults.into_result(Self { depot, visits, vehicle_type })
+        faults.into_result(Self { depot, visits, vehicle_type, layers: Vec::new() })
+    }
+
+    /// The same problem where route i is flown in layer i, and routes beyond the last layer in the last. Planners plan for
+    /// the vehicle type alone; only [`crate::evaluate`] asks which route is whose.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] if a number is out of its range, or drones have no way home of their own to fly in layers.
+    pub fn with_layers(self, layers: Vec<Layer>) -> Result<Self, InvalidInput> {
+        let mut faults = Faults::default();
+        if !layers.is_empty() && self.vehicle_type.way_home.is_none() {
+            faults.add(
+                "layers",
+                "drones have no way home of their own",
+                "give the speed of the way home, or no layers",
+            );
+        }
+        for (index, layer) in layers.iter().enumerate() {
+            for (range, name, value) in [
+                (DURATION, "takeoff_duration", layer.takeoff_duration),
+                (DURATION, "way_home_duration", layer.way_home_duration),
+                (ENERGY, "takeoff_energy", layer.takeoff_energy),
+                (ENERGY, "way_home_energy", layer.way_home_energy),
+            ] {
+                range.check(&mut faults, || format!("layers[{index}].{name}"), value);
+            }
+        }
+        faults.into_result(Self { layers, ..self })
+    }
+
+    /// The layers of the routes; empty where all fly as the vehicle type says.
+    #[must_use]
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers
+    }
+
+    /// The drone that flies a route of a plan, by the index of the route.
+    #[must_use]
+    pub fn drone_of(&self, route: usize) -> VehicleType {
+        let Some(layer) = self.layers.get(route).or(self.layers.last()) else { return self.vehicle_type };
+        VehicleType {
+            takeoff_duration: layer.takeoff_duration,
+            way_home: (self.vehicle_type.way_home)
+                .map(|way_home| WayHome { fixed_duration: layer.way_home_duration, ..way_home }),
+            energy: Energy {
+                takeoff_energy: layer.takeoff_energy,
+                way_home_fixed_energy: layer.way_home_energy,
+                ..self.vehicle_type.energy
+            },
+            ..self.vehicle_type
+        }
     }
 
     /// A research instance: visits without service time, `num_routes` drones at unit speed without limits.

@@ -4,6 +4,7 @@ use crate::error::to_python;
 use numpy::PyReadonlyArrayDyn;
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
+use pondhop_core::problem::Layer;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
@@ -107,6 +108,28 @@ pub fn values(
         Some(_) => Ok(view.iter().copied().collect()),
         None => Ok(Vec::new()),
     }
+}
+
+/// Rows of take-off and way home in seconds, and of both in joules; empty if not given or at fault.
+pub fn layers(faults: &mut Faults, name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Layer>> {
+    let Some(value) = value else { return Ok(Vec::new()) };
+    let Some(array) = real_array(faults, name, value)? else { return Ok(Vec::new()) };
+    let view = array.as_array();
+    match *view.shape() {
+        [_, 4] => {}
+        [0] => return Ok(Vec::new()),
+        _ => {
+            add_shape_fault(faults, name, view.shape(), "give layers as an array of shape (k, 4)");
+            return Ok(Vec::new());
+        }
+    }
+    let rows = view.rows().into_iter().map(|row| Layer {
+        takeoff_duration: row[0],
+        way_home_duration: row[1],
+        takeoff_energy: row[2],
+        way_home_energy: row[3],
+    });
+    Ok(rows.collect())
 }
 
 /// Pond indices per route.

@@ -7,7 +7,7 @@ pyo3::import_exception!(pondhop.errors, InvalidInput);
 
 /// Where the core finds a fault of a problem, and the argument of `pondhop.Problem` that it came from. A `#` stands for an
 /// index.
-const ARGUMENTS: [(&str, &str); 21] = [
+const ARGUMENTS: [(&str, &str); 25] = [
     ("depot.position.x", "depot[0]"),
     ("depot.position.y", "depot[1]"),
     ("visits", "ponds"),
@@ -27,6 +27,10 @@ const ARGUMENTS: [(&str, &str); 21] = [
     ("vehicle_type.energy.way_home_power", "energy.way_home_w"),
     ("vehicle_type.energy.way_home_fixed_energy", "energy.way_home_fixed_j"),
     ("vehicle_type.energy.usable_energy", "energy.usable_j"),
+    ("layers[#].takeoff_duration", "layers[#][0]"),
+    ("layers[#].way_home_duration", "layers[#][1]"),
+    ("layers[#].takeoff_energy", "layers[#][2]"),
+    ("layers[#].way_home_energy", "layers[#][3]"),
     ("vehicle_type.max_length", "max_length_m"),
     ("vehicle_type.max_duration", "max_duration_s"),
 ];

@@ -4,6 +4,7 @@ use crate::error::InvalidInput;
 use crate::values::{hash_of, table};
 use numpy::{PyArray1, PyArray2, ToPyArray};
 use pondhop_core::plan::Route;
+use pondhop_core::problem::VehicleType;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
@@ -227,17 +228,16 @@ impl Plan {
     /// the duration.
     #[getter]
     fn phase_durations_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let takeoff = self.problem.vehicle_type().takeoff_duration;
         let service = |route: &Route| route.stops.iter().map(|stop| stop.departure - stop.arrival).sum();
-        self.phases(py, takeoff, |leg| leg.duration, service)
+        self.phases(py, |drone| drone.takeoff_duration, |leg| leg.duration, service)
     }
 
     /// Joules per route and phase, shape (routes, 4): take-off; legs; on station; last leg, with the landing. They add up to
     /// the energy.
     #[getter]
     fn phase_energies_j<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let takeoff = self.problem.vehicle_type().energy.takeoff_energy;
-        self.phases(py, takeoff, |leg| leg.energy, |route| route.stops.iter().map(|stop| stop.service_energy).sum())
+        let service = |route: &Route| route.stops.iter().map(|stop| stop.service_energy).sum();
+        self.phases(py, |drone| drone.energy.takeoff_energy, |leg| leg.energy, service)
     }
 
     /// The longest route in metres (unitless in research instances): the paper's metric.
@@ -321,11 +321,12 @@ impl Plan {
     fn phases<'py>(
         &self,
         py: Python<'py>,
-        takeoff: f64,
+        takeoff: fn(&VehicleType) -> f64,
         of_leg: fn(&pondhop_core::travel::Leg) -> f64,
         service: fn(&Route) -> f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.inner.routes.iter().flat_map(|route| {
+        let rows = self.inner.routes.iter().enumerate().flat_map(|(index, route)| {
+            let takeoff = takeoff(&self.problem.drone_of(index));
             let legs: f64 = route.stops.iter().map(|stop| of_leg(&stop.leg)).sum();
             [takeoff, legs - takeoff, service(route), of_leg(&route.last_leg)]
         });

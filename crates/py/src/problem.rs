@@ -163,6 +163,10 @@ impl Energy {
 ///     What the time on station takes from the battery per pond in joules, shape (n,); 0 everywhere if not given.
 /// energy
 ///     What flying takes from the battery, and how much a route may take; all 0 and no limit if not given.
+/// layers
+///     Shape (k, 4), where each drone flies out and home at a height of its own: `takeoff_s`, `way_home_fixed_s`, and the
+///     `takeoff_j` and `way_home_fixed_j` of `energy`, for route i of a plan in row i; routes beyond have the last. Only
+///     `evaluate` counts with them: planners plan by the values that all drones share.
 ///
 /// Raises
 /// ------
@@ -183,7 +187,7 @@ impl Problem {
     #[new]
     #[pyo3(signature = (depot, ponds, num_drones, *, service_durations_s=None, speed_m_s=Real::of(1.0), leg_stop_s=Real::of(0.0),
                         max_length_m=Real::of(f64::INFINITY), max_duration_s=Real::of(f64::INFINITY), takeoff_s=Real::of(0.0),
-                        way_home_speed_m_s=None, way_home_fixed_s=Real::of(0.0), service_energies_j=None, energy=None))]
+                        way_home_speed_m_s=None, way_home_fixed_s=Real::of(0.0), service_energies_j=None, energy=None, layers=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         depot: &Bound<'_, PyAny>,
@@ -199,6 +203,7 @@ impl Problem {
         way_home_fixed_s: Real,
         service_energies_j: Option<&Bound<'_, PyAny>>,
         energy: Option<Energy>,
+        layers: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut faults = Faults::default();
         // What is at fault is replaced by what is not, so that the core looks at all the rest.
@@ -230,7 +235,9 @@ impl Problem {
             max_length: max_length_m.number(&mut faults, "max_length_m", f64::INFINITY),
             max_duration: max_duration_s.number(&mut faults, "max_duration_s", f64::INFINITY),
         };
-        let checked = pondhop_core::problem::Problem::new(Depot { position: depot }, visits, vehicle_type);
+        let layers = arguments::layers(&mut faults, "layers", layers)?;
+        let checked = pondhop_core::problem::Problem::new(Depot { position: depot }, visits, vehicle_type)
+            .and_then(|problem| problem.with_layers(layers));
         let inner = faults.with(checked).map_err(|error| to_python(&error))?;
         Ok(Self { inner: Arc::new(inner) })
     }
@@ -330,6 +337,15 @@ impl Problem {
         Energy { inner: self.inner.vehicle_type().energy }
     }
 
+    /// What take-off and way home take by route, shape (k, 4); of no rows where all drones fly alike.
+    #[getter]
+    fn layers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.inner.layers().iter().flat_map(|layer| {
+            [layer.takeoff_duration, layer.way_home_duration, layer.takeoff_energy, layer.way_home_energy]
+        });
+        table(py, rows, 4)
+    }
+
     /// Longest route in metres that a drone can fly; infinite where nothing limits it.
     #[getter]
     fn max_length_m(&self) -> f64 {
@@ -389,6 +405,9 @@ impl Problem {
         }
         if self.inner.visits().iter().any(|visit| visit.service_energy != 0.0) {
             arguments.set_item("service_energies_j", self.service_energies_j(py))?;
+        }
+        if !self.inner.layers().is_empty() {
+            arguments.set_item("layers", self.layers(py)?)?;
         }
         Ok(arguments)
     }

@@ -97,7 +97,7 @@ class Farm:
         Returns
         -------
         Problem
-            Pond i is ``ponds[i]``.
+            Pond i is ``ponds[i]``; route i of a plan is flown by drone i + 1, in its layer.
 
         Raises
         ------
@@ -119,6 +119,7 @@ class Farm:
             way_home_speed_m_s=fleet.return_speed_m_s,
             way_home_fixed_s=fleet.way_home_fixed_s,
             energy=fleet.energy,
+            layers=fleet.layer_costs(len(self.ponds)),
             max_length_m=np.inf if fleet.max_route_length_m is None else fleet.max_route_length_m,
             max_duration_s=np.inf if fleet.max_route_duration_s is None else fleet.max_route_duration_s,
         )

@@ -11,12 +11,13 @@ import json
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Any
 
-from pondhop._core import Separation, __version__, evaluate, separation
+from pondhop._core import Problem, Separation, __version__, evaluate, separation
 from pondhop.documents.atomic import write_all
 from pondhop.documents.schemas import check_schema, read_json
 from pondhop.errors import InvalidInput
@@ -158,7 +159,7 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
 def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
     farm, solution = farm_plan.farm, farm_plan.solution
     plan = solution.plan
-    # What the way home from each pond takes, landing included.
+    # What the way home from each pond takes in the lowest layer, landing included.
     energies_home_j = [float(energies_j[-1]) for energies_j in solution.alone.leg_energies_j]
     return {
         "schema": SCHEMA,
@@ -183,7 +184,10 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
             "total_energy_wh": float(plan.route_energies_j.sum()) / JOULES_PER_WATT_HOUR,
             "is_feasible": farm_plan.is_feasible,
         },
-        "routes": [_route_object(farm_plan, index, energies_home_j) for index in range(len(plan.routes))],
+        "routes": [
+            _route_object(farm_plan, index, [energy_j + layer_j for energy_j in energies_home_j])
+            for index, layer_j in zip(range(len(plan.routes)), _layers_home_j(solution.problem), strict=False)
+        ],
         "violations": [_violation_object(farm, violation) for violation in farm_plan.violations],
         "num_drones_needed": farm_plan.num_drones_needed,
         "unserved": [
@@ -248,6 +252,12 @@ def _violation_object(farm: Farm, violation: FarmViolation) -> dict[str, Any]:
         "message": violation.message,
         "remedy": violation.remedy,
     }
+
+
+def _layers_home_j(problem: Problem) -> Iterator[float]:
+    """What the way home of each route takes more than that of the lowest drone; it has no end."""
+    more_j = [float(way_home_j) - problem.energy.way_home_fixed_j for *_, way_home_j in problem.layers] or [0.0]
+    return chain(more_j, repeat(more_j[-1]))
 
 
 def _route_object(farm_plan: FarmPlan, index: int, energies_home_j: list[float]) -> dict[str, Any]:

@@ -10,13 +10,11 @@ from typing import Literal, get_args
 from pondhop._core import Energy
 from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet import times
+from pondhop.fleet.layers import Layers, layers_of
 from pondhop.fleet.settings import DECISIVE, MAX_HEIGHT_M, NUMBERS
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 SamplingStyle = Literal["hover-dip", "splashdown"]
-
-LAYER_SPACING_M = 3.0
-"""How much higher each drone comes home than the one before it, where nothing else is said."""
 
 
 @dataclass(frozen=True)
@@ -128,8 +126,8 @@ class Fleet:
 
     @property
     def takeoff_s(self) -> float:
-        """Time of the first take-off of a route, until the drone flies its first leg."""
-        return times.takeoff_s(self)
+        """Time of the first take-off of a route, until the drone flies its first leg, for the lowest drone."""
+        return times.takeoff_s(self, self.layers(1).way_out_m)
 
     @property
     def service_s(self) -> float:
@@ -159,27 +157,33 @@ class Fleet:
 
     @property
     def way_home_fixed_s(self) -> float:
-        """What the way home takes besides its length, for the drone that comes home highest."""
-        return times.way_home_fixed_s(self)
+        """What the way home takes besides its length, for the lowest drone."""
+        return times.way_home_fixed_s(self, self.layers(1).way_home_m)
 
-    def return_height_of(self, drone: int) -> float:
-        """Return the height at which a drone comes home, in metres; drones count from 0.
+    def num_flying(self, num_ponds: int) -> int:
+        """Return how many drones can fly a round over so many ponds: none flies without a pond."""
+        return max(1, min(self.num_drones, num_ponds))
 
-        The lowest comes at ``return_height_m``, but not below the transit height: an autopilot does not descend for
-        the way home.
-        """
-        return max(self.return_height_m, self.transit_height_m) + self._layer_m(drone)
+    def layers(self, num_ponds: int) -> Layers:
+        """Return the heights at which the drones of a round over so many ponds fly out and come home."""
+        return layers_of(self, num_ponds)
 
-    def way_out_height_of(self, drone: int) -> float:
-        """Return the height at which a drone flies to its first pond, in metres; drones count from 0."""
-        return self.transit_height_m + self._layer_m(drone)
-
-    def _layer_m(self, drone: int) -> float:
-        spacing_m = self.layer_spacing_m
-        if spacing_m is None:
-            room_m = MAX_HEIGHT_M - max(self.return_height_m, self.transit_height_m)
-            spacing_m = min(LAYER_SPACING_M, room_m / max(1, self.num_drones - 1))
-        return drone * spacing_m
+    def layer_costs(self, num_ponds: int) -> list[tuple[float, float, float, float]]:
+        """Return what take-off and way home take: both in seconds, both in joules, a row a drone that can fly."""
+        layers = self.layers(num_ponds)
+        heights_m = [
+            (layers.way_out_height_m(drone), layers.way_home_height_m(drone))
+            for drone in range(self.num_flying(num_ponds))
+        ]
+        return [
+            (
+                times.takeoff_s(self, way_out_m),
+                times.way_home_fixed_s(self, way_home_m),
+                times.takeoff_j(self, way_out_m),
+                times.way_home_fixed_j(self, way_home_m),
+            )
+            for way_out_m, way_home_m in heights_m
+        ]
 
     @property
     def usable_energy_j(self) -> float:
@@ -191,13 +195,13 @@ class Fleet:
 
     @property
     def energy(self) -> Energy:
-        """What flying takes from the battery, for the planning task."""
+        """What flying takes from the battery, for the lowest drone."""
         return Energy(
-            takeoff_j=times.takeoff_j(self),
+            takeoff_j=times.takeoff_j(self, self.layers(1).way_out_m),
             leg_w=times.power_w(self, self.speed_m_s),
             leg_stop_w=self.hover_power_w,
             way_home_w=times.power_w(self, self.return_speed_m_s),
-            way_home_fixed_j=times.way_home_fixed_j(self),
+            way_home_fixed_j=times.way_home_fixed_j(self, self.layers(1).way_home_m),
             usable_j=self.usable_energy_j,
         )
 
@@ -240,9 +244,10 @@ def _combined_faults(fleet: Fleet) -> list[Fault]:
     if fleet.sampling == "hover-dip" and fleet.dip_height_m >= fleet.transit_height_m:
         message = f"{fleet.dip_height_m:g} m is not below the transit height of {fleet.transit_height_m:g} m"
         faults.append(Fault("dip_height_m", message, "dip lower or fly higher"))
-    highest_m = fleet.return_height_of(fleet.num_drones - 1)
+    layers = fleet.layers(fleet.num_drones)
+    highest_m = layers.way_home_height_m(fleet.num_drones - 1)
     if fleet.layer_spacing_m is not None and highest_m > MAX_HEIGHT_M:
-        most_m = (MAX_HEIGHT_M - fleet.return_height_of(0)) / max(1, fleet.num_drones - 1)
+        most_m = (MAX_HEIGHT_M - layers.way_home_m) / max(1, fleet.num_drones - 1)
         message = f"with {fleet.layer_spacing_m:g} m between drones the highest comes home at {highest_m:g} m"
         action = f"give at most {math.floor(10 * most_m) / 10:g} m: nothing may fly above {MAX_HEIGHT_M} m"
         faults.append(Fault("layer_spacing_m", message, action))

@@ -56,13 +56,11 @@ def _last_dip_extra_s(fleet: Fleet) -> float:
     return fleet.last_dip_extra_s if fleet.sampling == "hover-dip" else 0.0
 
 
-def takeoff_s(fleet: Fleet) -> float:
+def takeoff_s(fleet: Fleet, height_m: float) -> float:
     """Return the time of the first take-off, with what the first leg takes more than others.
 
-    Drones fly to their first pond in layers, and go down to the transit height there; this is the time of the highest,
-    so that no drone is later than planned.
+    A drone flies to its first pond at the height of its layer, and goes down to the transit height there.
     """
-    height_m = fleet.way_out_height_of(fleet.num_drones - 1)
     down_s = (height_m - fleet.transit_height_m) / fleet.descent_speed_m_s
     return fleet.spool_up_s + fleet.climb_extra_s + climb_s(fleet, height_m) + down_s + _first_leg_extra_s(fleet)
 
@@ -76,12 +74,8 @@ def sampling_s(fleet: Fleet) -> float:
     return dip_m / fleet.descent_speed_m_s + climb_s(fleet, dip_m) + fleet.dip_extra_s + fleet.dwell_s
 
 
-def way_home_fixed_s(fleet: Fleet) -> float:
-    """Return what the way home takes besides its length: climb to the return height, wait above home, landing.
-
-    Drones come home in layers; this is the time of the highest, so that no drone is later than planned.
-    """
-    height_m = fleet.return_height_of(fleet.num_drones - 1)
+def way_home_fixed_s(fleet: Fleet, height_m: float) -> float:
+    """Return what the way home takes besides its length: climb to the height of its layer, wait above home, landing."""
     up_s = climb_s(fleet, height_m - fleet.transit_height_m)
     extra_s = _last_dip_extra_s(fleet)
     return up_s + fleet.return_loiter_s + landing_s(fleet, height_m) + fleet.return_extra_s + extra_s
@@ -116,9 +110,8 @@ def landing_j(fleet: Fleet, height_m: float) -> float:
     return descents_j + settling_s * fleet.touchdown_power_w
 
 
-def takeoff_j(fleet: Fleet) -> float:
+def takeoff_j(fleet: Fleet, height_m: float) -> float:
     """Return the energy of `takeoff_s`; spooling up draws next to nothing."""
-    height_m = fleet.way_out_height_of(fleet.num_drones - 1)
     down_j = descent_j(fleet, height_m - fleet.transit_height_m, fleet.descent_speed_m_s)
     return rise_j(fleet, height_m) + down_j + _first_leg_extra_s(fleet) * fleet.hover_power_w
 
@@ -134,9 +127,8 @@ def sampling_j(fleet: Fleet, duration_s: float) -> float:
     return descent_j(fleet, dip_m, fleet.descent_speed_m_s) + climb_j(fleet, dip_m) + hover_j
 
 
-def way_home_fixed_j(fleet: Fleet) -> float:
+def way_home_fixed_j(fleet: Fleet, height_m: float) -> float:
     """Return the energy of `way_home_fixed_s`."""
-    height_m = fleet.return_height_of(fleet.num_drones - 1)
     hover_s = fleet.return_loiter_s + fleet.return_extra_s + _last_dip_extra_s(fleet)
     up_j = climb_j(fleet, height_m - fleet.transit_height_m)
     return up_j + hover_s * fleet.hover_power_w + landing_j(fleet, height_m)

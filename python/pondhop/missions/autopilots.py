@@ -118,7 +118,8 @@ A drone that a crew lets land with more care keeps its speed where the fleet fil
 
 def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
     fleet, farm = farm_plan.fleet, farm_plan.farm
-    return_height_m = fleet.return_height_of(drone)
+    layers = farm_plan.layers
+    return_height_m = layers.way_home_height_m(drone)
     speed_why = "a pause in flight forgets the speed of the mission and takes this one"
     home_why = "drones come home in layers, so that they do not meet"
     found = [
@@ -140,7 +141,7 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
             Parameter("MIS_OPTIONS", 4, "bit 2: without it a drone ends on the first pond; add other bits", "int16"),
             Parameter("DISARM_DELAY", delay_s, "with less, a drone disarms on a pond before its stay is over", "int8"),
         ]
-    ceiling_m = max(return_height_m, fleet.way_out_height_of(drone)) + CEILING_MARGIN_M
+    ceiling_m = max(return_height_m, layers.way_out_height_m(drone)) + CEILING_MARGIN_M
     reach_m = _reach_m(farm_plan, drone) + RADIUS_MARGIN_M
     fence_why = "altitude, circle and polygons; a radius or ceiling left at its default ends the round on the way"
     found += [

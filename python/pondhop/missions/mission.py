@@ -104,7 +104,7 @@ def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int]) ->
         Indices of ``farm.ponds`` in flying order.
     """
     height_m = _rounded(fleet.transit_height_m)
-    way_out_m = _rounded(fleet.way_out_height_of(drone))
+    way_out_m = _rounded(fleet.layers(len(farm.ponds)).way_out_height_m(drone))
     speed_m_s = _rounded(fleet.speed_m_s)
     home = _rounded_position(farm.depot)
     items = [

@@ -42,13 +42,13 @@ def _wrapped(paragraph: str) -> str:
 
 
 def _drones(farm_plan: FarmPlan) -> list[str]:
-    fleet, plan = farm_plan.fleet, farm_plan.solution.plan
+    layers, plan = farm_plan.layers, farm_plan.solution.plan
     rows = []
     for drone, route in enumerate(plan.routes):
         start_s, back_s = farm_plan.takeoff_times_s[drone], farm_plan.back_times_s[drone]
         duration_s, phases = float(plan.route_durations_s[drone]), farm_plan.energy_phases(drone)
         length, energy = length_text(float(plan.route_lengths[drone])), energy_text(phases.total_j)
-        way_out, way_home = height_text(fleet.way_out_height_of(drone)), height_text(fleet.return_height_of(drone))
+        way_out, way_home = height_text(layers.way_out_height_m(drone)), height_text(layers.way_home_height_m(drone))
         rows += [
             f"drone-{drone + 1}: {counted(len(route), 'pond')}, {length}, {duration_text(duration_s)}, {energy}",
             f"  takes off at {clock_text(start_s)}, flies out {way_out} high, comes home {way_home} high, "
