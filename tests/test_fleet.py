@@ -117,6 +117,7 @@ def test_any_bytes_give_a_fleet_or_faults(tmp_path_factory: pytest.TempPathFacto
         ({"dwell_s": 0.4}, "dwell_s", "no whole number of seconds"),
         ({"dwell_s": 0.0, "sampling": "splashdown"}, "dwell_s", "no stay"),
         ({"num_drones": 40, "layer_spacing_m": 3.0}, "layer_spacing_m", "comes home at 132 m"),
+        ({"layer_spacing_m": 1.9}, "layer_spacing_m", "out of range"),
         ({"battery_wh": 0.0}, "battery_wh", "out of range"),
         ({"reserve_percent": 99.0}, "reserve_percent", "out of range"),
     ],
@@ -139,10 +140,15 @@ def test_drones_come_home_in_layers_of_their_own() -> None:
     layers = Fleet(4).layers(10)
     assert [layers.way_home_height_m(drone) for drone in range(4)] == [15.0, 18.0, 21.0, 24.0]
     assert [layers.way_out_height_m(drone) for drone in range(3)] == [7.0, 10.0, 13.0]
-    # No autopilot descends for the way home, and any number of drones fits below the highest allowed flight.
+    # No autopilot descends for the way home; layers are 2 m apart at least, whatever there is room for.
     assert Fleet(2, transit_height_m=30.0).layers(2).way_home_m == 30.0
-    assert Fleet(100).layers(100).way_home_height_m(99) == pytest.approx(121.9)
-    assert Fleet(2, layer_spacing_m=0.0).layers(2).way_home_height_m(1) == 15.0
+    assert Fleet(50).layers(50).way_home_height_m(49) == pytest.approx(121.9)
+    assert Fleet(60).layers(20).spacing_m == 3.0
+    with pytest.raises(InvalidInput, match="55 drones fly, but above 15 m there is room for 54 layers of 2 m"):
+        Fleet(10_000).layers(55)
+    with pytest.raises(InvalidInput, match=r"room for 1 layer of 2 m below 121.9 m .plan for 1"):
+        Fleet(3, transit_height_m=121.9).layers(6)
+    assert Fleet(3, transit_height_m=121.9).layers(1).way_home_m == 121.9
     # Drones that cannot fly for want of ponds need no layers.
     assert Fleet(100).layers(4) == Fleet(4).layers(4)
     assert len(Fleet(100).layer_costs(4)) == 4
@@ -158,6 +164,18 @@ def test_each_layer_costs_a_climb_and_a_descent_each_way() -> None:
         assert [cost - lowest for cost, lowest in zip(costs[drone][:2], costs[0][:2], strict=True)] == pytest.approx(
             [drone * (3 / 2.5 + 3 / 1.5)] * 2
         )
+
+
+def test_the_remedy_for_layers_too_high_is_one() -> None:
+    for settings, remedy in (
+        ({"num_drones": 40, "layer_spacing_m": 3.0}, "give at most 2.7 m: "),
+        ({"num_drones": 60, "layer_spacing_m": 3.0}, "fly with at most 54 drones (2 m apart), or lower: "),
+        ({"num_drones": 3, "layer_spacing_m": 3.0, "transit_height_m": 121.9}, "fly with at most 1 drones (2 m apart)"),
+    ):
+        with pytest.raises(InvalidInput) as caught:
+            Fleet(**settings)  # type: ignore[arg-type]
+        (fault,) = caught.value.faults
+        assert fault.action.startswith(remedy)
 
 
 def test_every_setting_has_a_range_and_a_source() -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from hand_made import DEPOT, make_farm, make_plan, square, two_drones
+from pondhop import plan as pondhop_plan
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import Fleet, SamplingStyle
@@ -140,8 +141,8 @@ def test_every_drone_flies_out_in_a_layer_of_its_own() -> None:
         MissionItem(Action.WAYPOINT, pond, 7.0),
     )
     assert check(third) == []
-    flat = build_mission(2, make_farm(), replace(fleet, layer_spacing_m=0.0), [1, 0])
-    assert len(flat.items) == len(third.items) - 1
+    lowest = build_mission(0, make_farm(), fleet, [1, 0])
+    assert len(lowest.items) == len(third.items) - 1
 
 
 def parameters(path: Path) -> dict[str, float]:
@@ -624,3 +625,51 @@ def test_less_time_on_station_than_sampling_takes_is_a_fault(sampling: SamplingS
         with pytest.raises(InvalidInput, match=f"^{place}: service_s is .* takes {least_s:g} s at least") as caught:
             plan_with(*own_s)
         assert len(caught.value.faults) == 1
+
+
+def heights_of_ways(farm_plan: FarmPlan, tmp_path: Path) -> list[tuple[float, float]]:
+    """Heights of the ways out and home of each drone, as its files say them."""
+    write_missions(tmp_path, farm_plan)
+    return [
+        (
+            parse_waypoints((tmp_path / f"drone-{number}.waypoints").read_text(), f"drone-{number}").items[0].height_m
+            or 0.0,
+            parameters(tmp_path / f"drone-{number}.param")["RTL_ALT"] / 100,
+        )
+        for number in range(1, len(farm_plan.solution.plan.routes) + 1)
+    ]
+
+
+STACKED = {(3, 25.0), (5, 10.0), (5, 25.0)}
+"""Where times alone would not keep the drones apart."""
+
+
+@pytest.mark.parametrize("takeoff_interval_s", [0.0, 10.0, 25.0, 100.0, 300.0])
+@pytest.mark.parametrize("num_drones", [2, 3, 5])
+def test_ways_out_and_home_keep_their_distance(num_drones: int, takeoff_interval_s: float, tmp_path: Path) -> None:
+    fleet = Fleet(num_drones, takeoff_interval_s=takeoff_interval_s)
+    farm_plan = pondhop_plan(make_farm(), fleet, iterations=2000)
+    assert farm_plan.is_feasible
+    heights_m, plan = heights_of_ways(farm_plan, tmp_path), farm_plan.solution.plan
+    for one, (out_m, one_home_m) in enumerate(heights_m):
+        for other, (other_out_m, home_m) in enumerate(heights_m):
+            if one == other:
+                continue
+            assert abs(out_m - other_out_m) >= 3.0
+            assert abs(one_home_m - home_m) >= 3.0
+            out_end_s = one * takeoff_interval_s + plan.arrivals_s[one][0]
+            home_start_s = other * takeoff_interval_s + plan.departures_s[other][-1]
+            home_end_s = other * takeoff_interval_s + plan.route_durations_s[other]
+            if one * takeoff_interval_s < home_end_s and home_start_s < out_end_s:
+                assert abs(out_m - home_m) >= 3.0
+    text = " ".join((tmp_path / "README.txt").read_text().split())
+    assert ("all ways home lie above all ways out" in text) == farm_plan.are_layers_stacked
+    assert farm_plan.are_layers_stacked == ((num_drones, takeoff_interval_s) in STACKED)
+
+
+def test_drones_that_would_pass_too_near_are_not_flown(tmp_path: Path) -> None:
+    # Drone 5 flies out at 19 m when drone 2 comes home at 18 m.
+    farm_plan = make_plan(make_farm(), Fleet(5, takeoff_interval_s=25.0), [[0], [1], [2], [3], [4]])
+    assert farm_plan.near_drones is not None
+    with pytest.raises(InvalidInput, match=r"flies out while drone . comes home .* m above or below it"):
+        write_missions(tmp_path, farm_plan)

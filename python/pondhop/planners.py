@@ -401,7 +401,8 @@ def plan(
     problem = farm.to_problem(fleet)
     solved = solve(problem, planner=planner, **options)
     solution = replace(solved, separation=_core.separation(problem, solved.plan.routes))
-    farm_plan = FarmPlan(farm, fleet, solution)
+    farm_plan = _in_layers(FarmPlan(farm, fleet, solution))
+    solution = farm_plan.solution
     beyond: tuple[FarmViolation, ...] = ()
     if any(violation.kind in LIMIT_KINDS for violation in solution.plan.violations):
         beyond = tuple(_ponds_beyond_reach(farm, solution))
@@ -446,6 +447,20 @@ def _hungriest_lowest(problem: Problem, routes: Routes) -> Routes:
     return [plan.routes[index] for index in order]
 
 
+def _in_layers(farm_plan: FarmPlan) -> FarmPlan:
+    """Return a plan with all ways home above all ways out, if drones would come too near to each other without."""
+    if farm_plan.near_drones is None:
+        return farm_plan
+    solution = farm_plan.solution
+    try:
+        problem = farm_plan.farm.to_problem(farm_plan.fleet, are_layers_stacked=True)
+    except InvalidInput:
+        # They do not fit below the highest allowed flight; the plan tells which drones are too near.
+        return farm_plan
+    plan = _core.evaluate(problem, solution.plan.routes)
+    return replace(farm_plan, solution=replace(solution, problem=problem, plan=plan), are_layers_stacked=True)
+
+
 def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
     """Return a plan that breaks a limit with the number of drones that keeps all, or one by which as many drones do.
 
@@ -455,17 +470,19 @@ def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
     farm, fleet, solution = farm_plan.farm, farm_plan.fleet, farm_plan.solution
     is_separate = options.has_separate_airspace or solution.planner == "territory"
 
-    def found(num_drones: int) -> Solution | None:
+    def found(num_drones: int) -> FarmPlan | None:
         try:
-            problem = farm.to_problem(replace(fleet, num_drones=num_drones))
+            wider = replace(fleet, num_drones=num_drones)
+            problem = farm.to_problem(wider)
         except InvalidInput:
             return None
         for costs in (problem.layers.min(axis=0), problem.layers.max(axis=0)):
             levelled = _levelled(problem, costs)
             routes = _sized(levelled, options, is_separate)
             plan = _core.evaluate(problem, _hungriest_lowest(problem, routes))
-            if plan.is_feasible:
-                return replace(solution, problem=problem, plan=plan)
+            flown = _in_layers(FarmPlan(farm, wider, replace(solution, problem=problem, plan=plan)))
+            if flown.solution.plan.is_feasible and flown.near_drones is None:
+                return flown
             if not _core.evaluate(levelled, routes).is_feasible:
                 # Not even if all could fly lowest; higher up there is less to be had.
                 return None
@@ -484,8 +501,8 @@ def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
     if best is None:
         return farm_plan
     if enough == fleet.num_drones and solution.planner in ADVISED:
-        separation = _core.separation(best.problem, best.plan.routes)
-        return replace(farm_plan, solution=replace(best, separation=separation))
+        separation = _core.separation(best.solution.problem, best.solution.plan.routes)
+        return replace(best, solution=replace(best.solution, separation=separation))
     return replace(farm_plan, num_drones_needed=enough)
 
 

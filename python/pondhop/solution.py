@@ -154,6 +154,8 @@ class FarmPlan:
         cross a no-fly zone, missions that no autopilot stores, data nobody confirmed.
     num_drones_needed
         How many drones keep every limit where this plan breaks one; `None` where it breaks none, or nobody tried.
+    are_layers_stacked
+        Whether all drones come home above all ways out, because time would not keep them apart.
     """
 
     farm: Farm
@@ -161,6 +163,7 @@ class FarmPlan:
     solution: Solution
     obstacles: tuple[FarmViolation, ...] = ()
     num_drones_needed: int | None = None
+    are_layers_stacked: bool = False
 
     @property
     def violations(self) -> tuple[FarmViolation, ...]:
@@ -176,7 +179,30 @@ class FarmPlan:
     @property
     def layers(self) -> Layers:
         """At which heights the drones fly out to their first pond and come home."""
-        return self.fleet.layers(len(self.farm.ponds))
+        return self.fleet.layers(len(self.farm.ponds), are_stacked=self.are_layers_stacked)
+
+    @property
+    def near_drones(self) -> tuple[int, int, float] | None:
+        """A drone that flies out while another comes home nearer to its height than the layers promise, if any.
+
+        Ways out lie one spacing above each other, and so do ways home; a way out and a way home of different drones may
+        lie nearer only where one has ended before the other begins, by the times of the plan.
+
+        Returns
+        -------
+        tuple or None
+            Both drones, from 0, and the metres between their heights.
+        """
+        layers, plan, starts_s = self.layers, self.solution.plan, self.takeoff_times_s
+        for out in range(len(plan.routes)):
+            out_end_s = starts_s[out] + float(plan.arrivals_s[out][0])
+            for home in range(len(plan.routes)):
+                apart_m = abs(layers.way_out_height_m(out) - layers.way_home_height_m(home))
+                home_start_s = starts_s[home] + float(plan.departures_s[home][-1])
+                is_together = starts_s[out] < self.back_times_s[home] and home_start_s < out_end_s
+                if out != home and apart_m < layers.spacing_m - 1e-9 and is_together:
+                    return out, home, apart_m
+        return None
 
     @property
     def takeoff_times_s(self) -> tuple[float, ...]:

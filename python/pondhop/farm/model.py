@@ -85,7 +85,7 @@ class Farm:
     notes: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
 
-    def to_problem(self, fleet: Fleet) -> Problem:
+    def to_problem(self, fleet: Fleet, *, are_layers_stacked: bool = False) -> Problem:
         """The planning task in metres, in the local frame whose origin is the depot.
 
         Parameters
@@ -93,6 +93,8 @@ class Farm:
         fleet
             The drones; its time on station applies to every pond without its own. A pond's own is rounded to whole
             seconds of dwell, as it is flown.
+        are_layers_stacked
+            Whether all drones come home above all ways out: see `pondhop.fleet.layers.layers_of`.
 
         Returns
         -------
@@ -102,7 +104,8 @@ class Farm:
         Raises
         ------
         InvalidInput
-            With the ponds whose own time on station is less than what sampling takes.
+            With the ponds whose own time on station is less than what sampling takes, or if so many drones do not fit
+            above each other.
         """
         _check_service(self.ponds, fleet)
         sampling_points = np.array([pond.sampling_point for pond in self.ponds], dtype=np.float64)
@@ -119,7 +122,7 @@ class Farm:
             way_home_speed_m_s=fleet.return_speed_m_s,
             way_home_fixed_s=fleet.way_home_fixed_s,
             energy=fleet.energy,
-            layers=fleet.layer_costs(len(self.ponds)),
+            layers=fleet.layer_costs(len(self.ponds), are_stacked=are_layers_stacked),
             max_length_m=np.inf if fleet.max_route_length_m is None else fleet.max_route_length_m,
             max_duration_s=np.inf if fleet.max_route_duration_s is None else fleet.max_route_duration_s,
         )

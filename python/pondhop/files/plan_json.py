@@ -133,7 +133,8 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
     unknown = list(unknown_ponds(routes, len(farm.ponds), "routes[{route}].trips[0].stops[{order}].pond"))
     if unknown:
         raise InvalidInput(unknown)
-    problem = farm.to_problem(fleet)
+    are_layers_stacked = content.get("are_layers_stacked", False)
+    problem = farm.to_problem(fleet, are_layers_stacked=are_layers_stacked)
     solution = Solution(
         problem=problem,
         plan=evaluate(problem, routes),
@@ -145,7 +146,13 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
         reason=content["reason"],
         known_lower_bound_s=content["lower_bound_s"],
     )
-    derived = FarmPlan(farm, fleet, solution, num_drones_needed=content["num_drones_needed"])
+    derived = FarmPlan(
+        farm,
+        fleet,
+        solution,
+        num_drones_needed=content["num_drones_needed"],
+        are_layers_stacked=are_layers_stacked,
+    )
     kinds = {violation.kind for violation in derived.violations}
     obstacles = tuple(_violation(violation) for violation in content["violations"] if violation["kind"] not in kinds)
     farm_plan = replace(derived, obstacles=obstacles)
@@ -190,6 +197,7 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
         ],
         "violations": [_violation_object(farm, violation) for violation in farm_plan.violations],
         "num_drones_needed": farm_plan.num_drones_needed,
+        "are_layers_stacked": farm_plan.are_layers_stacked,
         "unserved": [
             {
                 "pond": pond,

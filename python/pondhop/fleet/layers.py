@@ -5,13 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet.settings import MAX_HEIGHT_M
 
 if TYPE_CHECKING:
     from pondhop.fleet.model import Fleet
 
 LAYER_SPACING_M = 3.0
-"""How much higher each drone comes home than the one before it, where nothing else is said."""
+"""How much higher each drone comes home than the one before it, where nothing else is said and there is room."""
+
+LEAST_SPACING_M = 2.0
+"""Less is no distance: barometers of drones drift apart by a metre, and each keeps its height within half of one."""
 
 
 @dataclass(frozen=True)
@@ -39,14 +43,40 @@ class Layers:
         return self.way_home_m + drone * self.spacing_m
 
 
-def layers_of(fleet: Fleet, num_ponds: int) -> Layers:
+def layers_of(fleet: Fleet, num_ponds: int, *, are_stacked: bool = False) -> Layers:
     """Return the layers of a round over so many ponds: no more drones fly than there are ponds.
 
     The lowest drone comes home at ``return_height_m``, but not below the transit height: an autopilot does not descend
     for the way home.
+
+    Parameters
+    ----------
+    are_stacked
+        Whether all ways home lie above all ways out, by the spacing. Else they may lie between each other, and time
+        must keep them apart.
+
+    Raises
+    ------
+    InvalidInput
+        If the layers do not fit below the highest allowed flight.
     """
-    way_home_m = max(fleet.return_height_m, fleet.transit_height_m)
+    num_flying = fleet.num_flying(num_ponds)
+    base_m = max(fleet.return_height_m, fleet.transit_height_m)
+    num_above = num_flying - 1
     spacing_m = fleet.layer_spacing_m
     if spacing_m is None:
-        spacing_m = min(LAYER_SPACING_M, (MAX_HEIGHT_M - way_home_m) / max(1, fleet.num_flying(num_ponds) - 1))
-    return Layers(fleet.transit_height_m, way_home_m, spacing_m)
+        fitting_m = [(MAX_HEIGHT_M - base_m) / max(1, num_above)]
+        if are_stacked:
+            fitting_m.append((MAX_HEIGHT_M - fleet.transit_height_m) / (num_flying + num_above))
+        spacing_m = max(LEAST_SPACING_M, min(LAYER_SPACING_M, *fitting_m))
+    if are_stacked:
+        base_m = max(base_m, fleet.transit_height_m + num_flying * spacing_m)
+    if num_above and base_m + num_above * spacing_m > MAX_HEIGHT_M + 1e-9:
+        num_fitting = 1 + max(0, int((MAX_HEIGHT_M - base_m) / spacing_m))
+        message = (
+            f"{num_flying} drones fly, but above {base_m:g} m there is room for {num_fitting} "
+            f"{'layer' if num_fitting == 1 else 'layers'} of {spacing_m:g} m below {MAX_HEIGHT_M} m"
+        )
+        action = f"plan for {num_fitting}, or fly lower: transit_height_m, return_height_m"
+        raise InvalidInput([Fault("num_drones", message, action)])
+    return Layers(fleet.transit_height_m, base_m, spacing_m)

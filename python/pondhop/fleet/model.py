@@ -10,7 +10,7 @@ from typing import Literal, get_args
 from pondhop._core import Energy
 from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet import times
-from pondhop.fleet.layers import Layers, layers_of
+from pondhop.fleet.layers import LEAST_SPACING_M, Layers, layers_of
 from pondhop.fleet.settings import DECISIVE, MAX_HEIGHT_M, NUMBERS
 from pondhop.units import JOULES_PER_WATT_HOUR
 
@@ -41,8 +41,8 @@ class Fleet:
         What one drone can fly; ``None`` where nothing limits it.
     takeoff_interval_s, layer_spacing_m
         What keeps drones apart at home: the time between two take-offs, and how much higher each drone flies out to its
-        first pond and comes home than the one before it; ``None``: 3 m, or less where so many drones would come home
-        above the highest allowed flight.
+        first pond and comes home than the one before it; ``None``: 3 m, or less, but at least 2 m, where so many drones
+        would come home above the highest allowed flight.
     fence_margin_m
         How far every leg must stay inside of fences and outside of no-fly zones.
     battery_wh, reserve_percent, health_percent
@@ -164,13 +164,13 @@ class Fleet:
         """Return how many drones can fly a round over so many ponds: none flies without a pond."""
         return max(1, min(self.num_drones, num_ponds))
 
-    def layers(self, num_ponds: int) -> Layers:
-        """Return the heights at which the drones of a round over so many ponds fly out and come home."""
-        return layers_of(self, num_ponds)
+    def layers(self, num_ponds: int, *, are_stacked: bool = False) -> Layers:
+        """Return the heights at which drones fly out and come home: see `pondhop.fleet.layers.layers_of`."""
+        return layers_of(self, num_ponds, are_stacked=are_stacked)
 
-    def layer_costs(self, num_ponds: int) -> list[tuple[float, float, float, float]]:
+    def layer_costs(self, num_ponds: int, *, are_stacked: bool = False) -> list[tuple[float, float, float, float]]:
         """Return what take-off and way home take: both in seconds, both in joules, a row a drone that can fly."""
-        layers = self.layers(num_ponds)
+        layers = self.layers(num_ponds, are_stacked=are_stacked)
         heights_m = [
             (layers.way_out_height_m(drone), layers.way_home_height_m(drone))
             for drone in range(self.num_flying(num_ponds))
@@ -244,11 +244,16 @@ def _combined_faults(fleet: Fleet) -> list[Fault]:
     if fleet.sampling == "hover-dip" and fleet.dip_height_m >= fleet.transit_height_m:
         message = f"{fleet.dip_height_m:g} m is not below the transit height of {fleet.transit_height_m:g} m"
         faults.append(Fault("dip_height_m", message, "dip lower or fly higher"))
-    layers = fleet.layers(fleet.num_drones)
-    highest_m = layers.way_home_height_m(fleet.num_drones - 1)
-    if fleet.layer_spacing_m is not None and highest_m > MAX_HEIGHT_M:
-        most_m = (MAX_HEIGHT_M - layers.way_home_m) / max(1, fleet.num_drones - 1)
+    lowest_m, num_above = fleet.layers(1).way_home_m, fleet.num_drones - 1
+    if fleet.layer_spacing_m is not None and lowest_m + num_above * fleet.layer_spacing_m > MAX_HEIGHT_M:
+        highest_m, most_m = lowest_m + num_above * fleet.layer_spacing_m, (MAX_HEIGHT_M - lowest_m) / num_above
         message = f"with {fleet.layer_spacing_m:g} m between drones the highest comes home at {highest_m:g} m"
-        action = f"give at most {math.floor(10 * most_m) / 10:g} m: nothing may fly above {MAX_HEIGHT_M} m"
+        num_fitting = 1 + math.floor((MAX_HEIGHT_M - lowest_m) / LEAST_SPACING_M)
+        most = (
+            f"give at most {math.floor(10 * most_m) / 10:g} m"
+            if most_m >= LEAST_SPACING_M
+            else (f"fly with at most {num_fitting} drones ({LEAST_SPACING_M:g} m apart), or lower")
+        )
+        action = f"{most}: nothing may fly above {MAX_HEIGHT_M} m"
         faults.append(Fault("layer_spacing_m", message, action))
     return faults

@@ -55,7 +55,7 @@ NUMBERS = {
     "return_height_m": Setting(1.0, MAX_HEIGHT_M, "published"),
     "return_loiter_s": Setting(0.0, 600.0, "published"),
     "return_extra_s": Setting(0.0, 600.0, "measured"),
-    "layer_spacing_m": Setting(0.0, 50.0, "assumed"),
+    "layer_spacing_m": Setting(2.0, 50.0, "assumed"),
     "fence_margin_m": Setting(0.0, 1_000.0, "published"),
     "takeoff_interval_s": Setting(0.0, 600.0, "assumed"),
     "hover_power_w": Setting(0.0, 1e5, "measured"),

@@ -170,7 +170,7 @@ def _obstacles(farm_plan: FarmPlan, missions: Sequence[Mission]) -> tuple[FarmVi
         for drone, mission in enumerate(missions, start=1)
         for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
     ]
-    return (*_doubts(farm_plan.farm), *broken)
+    return (*_doubts(farm_plan.farm), *_near_drones(farm_plan), *broken)
 
 
 def _doubts(farm: Farm) -> list[FarmViolation]:
@@ -179,6 +179,21 @@ def _doubts(farm: Farm) -> list[FarmViolation]:
         return []
     fault = doubt_fault(farm.doubts)
     return [FarmViolation("unconfirmed", fault.message, fault.action)]
+
+
+def _near_drones(farm_plan: FarmPlan) -> list[FarmViolation]:
+    """Drones that would pass each other nearer than their layers promise."""
+    near = farm_plan.near_drones
+    if near is None:
+        return []
+    out, home, apart_m = near
+    spacing_m = farm_plan.layers.spacing_m
+    message = (
+        f"drone {out + 1} flies out while drone {home + 1} comes home {apart_m:.1f} m above or below it, "
+        f"nearer than {spacing_m:g} m"
+    )
+    remedy = "plan again, with a shorter takeoff_interval_s or fewer drones"
+    return [FarmViolation("layers", message, remedy, None, None, apart_m, spacing_m)]
 
 
 def _missions(farm_plan: FarmPlan) -> list[Mission]:

@@ -121,7 +121,7 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
     layers = farm_plan.layers
     return_height_m = layers.way_home_height_m(drone)
     speed_why = "a pause in flight forgets the speed of the mission and takes this one"
-    home_why = "drones come home in layers, so that they do not meet"
+    home_why = f"drones come home in layers, {layers.spacing_m:g} m above each other"
     found = [
         Parameter("WPNAV_SPEED", round(100 * fleet.speed_m_s), speed_why, "real"),
         Parameter("RTL_ALT", round(100 * return_height_m), home_why, "int32"),

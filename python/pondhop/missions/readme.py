@@ -121,6 +121,7 @@ def _knowledge(farm_plan: FarmPlan) -> list[str]:
         f"{fleet.service_s:.0f} s at a pond, of these {fleet.dwell_s:g} s of sampling.",
         *_own_times(farm_plan),
         "Heights are above the depot; the ground is taken to be flat.",
+        *_layers(farm_plan),
         f"The way home (RTL) is flown at {speed_text(fleet.return_speed_m_s)}, at the height of each drone above.",
         *farm_plan.notes,
     ]
@@ -137,3 +138,16 @@ def _own_times(farm_plan: FarmPlan) -> list[str]:
         f"{', '.join(names[service_s])}."
         for service_s in sorted(names)
     ]
+
+
+def _layers(farm_plan: FarmPlan) -> list[str]:
+    """What keeps drones apart in height, where more than one flies."""
+    if len(farm_plan.solution.plan.routes) < 2:
+        return []
+    spacing = height_text(farm_plan.layers.spacing_m)
+    crossing = (
+        "all ways home lie above all ways out."
+        if farm_plan.are_layers_stacked
+        else "where a way out and a way home lie nearer, the times above keep them apart, so start each drone on time."
+    )
+    return [f"Ways out lie at least {spacing} above each other, and so do ways home; {crossing}"]
