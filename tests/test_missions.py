@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import pondhop.missions
 from hand_made import DEPOT, make_farm, make_plan, square, two_drones
 from pondhop import plan as pondhop_plan
 from pondhop.errors import Fault, InvalidInput
@@ -673,3 +674,45 @@ def test_drones_that_would_pass_too_near_are_not_flown(tmp_path: Path) -> None:
     assert farm_plan.near_drones is not None
     with pytest.raises(InvalidInput, match=r"flies out while drone . comes home .* m above or below it"):
         write_missions(tmp_path, farm_plan)
+
+
+def test_no_parameter_is_beyond_what_ardupilot_takes(tmp_path: Path) -> None:
+    """Ranges of ArduPilot's parameter reference, at the ends of ours."""
+    fastest = Fleet(
+        num_drones=2,
+        speed_m_s=20.0,
+        return_speed_m_s=20.0,
+        return_loiter_s=60.0,
+        climb_speed_m_s=10.0,
+        descent_speed_m_s=5.0,
+        landing_speed_m_s=2.0,
+        slow_landing_height_m=100.0,
+        return_height_m=100.0,
+    )
+    farm_plan = make_plan(make_farm(), fastest, [[0, 1, 2], [4, 3]])
+    assert any("speed_m_s 20 and return_speed_m_s 20" in note for note in farm_plan.notes)
+    write_missions(tmp_path, farm_plan)
+    most = {
+        "WPNAV_SPEED": 2000,
+        "RTL_SPEED": 2000,
+        "RTL_LOIT_TIME": 60_000,
+        "WPNAV_SPEED_UP": 1000,
+        "WPNAV_SPEED_DN": 500,
+        "LAND_SPEED": 200,
+        "LAND_ALT_LOW": 10_000,
+        "FENCE_RADIUS": 10_000,
+        "FENCE_ALT_MAX": 1000,
+    }
+    found = parameters(tmp_path / "drone-2.param")
+    assert {name for name, limit in most.items() if found[name] > limit} == set()
+
+
+def test_a_pond_beyond_the_largest_fence_is_not_flown() -> None:
+    def violations(north_deg: float) -> list[FarmViolation]:
+        ponds = (Pond("near", (-89.0, 37.001)), Pond("far", (-89.0, 37.0 + north_deg)))
+        farm_plan = make_plan(make_farm(ponds=ponds, fences=()), Fleet(2), [[0], [1]])
+        return list(pondhop.missions.obstacles(farm_plan))
+
+    assert violations(9_900 / 111_000) == []
+    (found,) = violations(12_000 / 111_000)
+    assert (found.kind, found.drone, found.limit) == ("too_far", 2, 9950.0)

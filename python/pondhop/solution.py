@@ -15,6 +15,7 @@ from pondhop._core import Plan, Problem, Separation, Violation, evaluate
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
 from pondhop.fleet.layers import Layers
+from pondhop.fleet.settings import AIRFRAME_SPEED_M_S
 from pondhop.palette import route_colour
 from pondhop.units import counted, duration_text, energy_text, length_text
 
@@ -242,6 +243,19 @@ class FarmPlan:
         notes = list(self.farm.notes)
         if self.solution.reason:
             notes.append(f"Planner {self.solution.planner} chose {self.solution.reason}.")
+        fast = [
+            f"{name} {value:g}"
+            for name, value in (
+                ("speed_m_s", self.fleet.speed_m_s),
+                ("return_speed_m_s", self.fleet.return_speed_m_s),
+            )
+            if value > AIRFRAME_SPEED_M_S
+        ]
+        if fast:
+            notes.append(
+                f"The plan counts with {' and '.join(fast)}: the quadcopter of its laws flies at most "
+                f"{AIRFRAME_SPEED_M_S:g} m/s, so see that yours does fly that fast."
+            )
         if self.solution.is_interrupted:
             notes.append("The planning was stopped with Ctrl-C: this is the best plan until then.")
         return tuple(notes)

@@ -35,7 +35,7 @@ class Setting:
 
 NUMBERS = {
     "num_drones": Setting(1, 10_000, "assumed"),
-    "speed_m_s": Setting(0.1, 50.0, "assumed"),
+    "speed_m_s": Setting(0.1, 20.0, "assumed"),
     "transit_height_m": Setting(1.0, MAX_HEIGHT_M, "assumed"),
     "dwell_s": Setting(0.0, 3_600.0, "assumed"),
     "dip_height_m": Setting(0.1, MAX_HEIGHT_M, "assumed"),
@@ -43,17 +43,17 @@ NUMBERS = {
     "first_leg_extra_s": Setting(0.0, 600.0, "measured"),
     "last_dip_extra_s": Setting(0.0, 600.0, "measured"),
     "dip_extra_s": Setting(0.0, 600.0, "measured"),
-    "climb_speed_m_s": Setting(0.1, 20.0, "published"),
-    "descent_speed_m_s": Setting(0.1, 20.0, "published"),
-    "landing_speed_m_s": Setting(0.05, 10.0, "published"),
-    "slow_landing_height_m": Setting(0.0, MAX_HEIGHT_M, "published"),
+    "climb_speed_m_s": Setting(0.1, 10.0, "published"),
+    "descent_speed_m_s": Setting(0.1, 5.0, "published"),
+    "landing_speed_m_s": Setting(0.3, 2.0, "published"),
+    "slow_landing_height_m": Setting(1.0, 100.0, "published"),
     "spool_up_s": Setting(0.0, 600.0, "measured"),
     "climb_extra_s": Setting(0.0, 600.0, "measured"),
     "landing_extra_s": Setting(0.0, 600.0, "measured"),
     "fast_landing_extra_s": Setting(0.0, 600.0, "measured"),
-    "return_speed_m_s": Setting(0.1, 50.0, "published"),
+    "return_speed_m_s": Setting(0.1, 20.0, "published"),
     "return_height_m": Setting(1.0, MAX_HEIGHT_M, "published"),
-    "return_loiter_s": Setting(0.0, 600.0, "published"),
+    "return_loiter_s": Setting(0.0, 60.0, "published"),
     "return_extra_s": Setting(0.0, 600.0, "measured"),
     "layer_spacing_m": Setting(2.0, 50.0, "assumed"),
     "fence_margin_m": Setting(0.0, 1_000.0, "published"),
@@ -71,7 +71,10 @@ NUMBERS = {
     "max_route_length_m": Setting(1.0, 1e7, "assumed"),
     "max_route_duration_s": Setting(1.0, 1e6, "assumed"),
 }
-"""Every number of a fleet."""
+"""Every number of a fleet. Speeds, landings and the wait above home end where ArduPilot's parameters for them do."""
+
+AIRFRAME_SPEED_M_S = 10.0
+"""The measured quadcopter flies no faster, however it is set: it leans 30 degrees then."""
 
 DECISIVE = ("speed_m_s", "transit_height_m", "sampling", "dwell_s", "dip_height_m")
 """Settings that decide what is flown: their defaults are told as assumptions wherever a plan is told."""

@@ -16,7 +16,7 @@ from pathlib import Path
 from pondhop.documents.atomic import earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import Farm, doubt_fault
-from pondhop.missions.autopilots import ARDUPILOT
+from pondhop.missions.autopilots import ARDUPILOT, MAX_FENCE_RADIUS_M, RADIUS_MARGIN_M, reach_of
 from pondhop.missions.check import BrokenRule, broken_rules, max_num_ponds
 from pondhop.missions.formats import FORMATS
 from pondhop.missions.mission import Mission, build_mission
@@ -28,6 +28,7 @@ from pondhop.missions.parameters import (
 )
 from pondhop.missions.readme import BEGINNING, crew_readme
 from pondhop.solution import FarmPlan, FarmViolation
+from pondhop.units import length_text
 
 __all__ = ["README", "earlier_missions", "judged", "mission_texts", "obstacles", "write_missions"]
 
@@ -170,7 +171,7 @@ def _obstacles(farm_plan: FarmPlan, missions: Sequence[Mission]) -> tuple[FarmVi
         for drone, mission in enumerate(missions, start=1)
         for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
     ]
-    return (*_doubts(farm_plan.farm), *_near_drones(farm_plan), *broken)
+    return (*_doubts(farm_plan.farm), *_near_drones(farm_plan), *_too_far(farm_plan), *broken)
 
 
 def _doubts(farm: Farm) -> list[FarmViolation]:
@@ -194,6 +195,25 @@ def _near_drones(farm_plan: FarmPlan) -> list[FarmViolation]:
     )
     remedy = "plan again, with a shorter takeoff_interval_s or fewer drones"
     return [FarmViolation("layers", message, remedy, None, None, apart_m, spacing_m)]
+
+
+def _too_far(farm_plan: FarmPlan) -> list[FarmViolation]:
+    """Drones that would leave the largest circle around home that the autopilot can keep them in."""
+    most_m = MAX_FENCE_RADIUS_M - RADIUS_MARGIN_M
+    reaches_m = [reach_of(farm_plan, drone) for drone in range(len(farm_plan.solution.plan.routes))]
+    return [
+        FarmViolation(
+            "too_far",
+            f"it gets {length_text(reach_m)} from the depot, the fence of {ARDUPILOT.name} holds {length_text(most_m)}",
+            "move the depot nearer, or leave the ponds beyond it out",
+            drone,
+            None,
+            reach_m,
+            most_m,
+        )
+        for drone, reach_m in enumerate(reaches_m, start=1)
+        if reach_m > most_m
+    ]
 
 
 def _missions(farm_plan: FarmPlan) -> list[Mission]:

@@ -25,6 +25,9 @@ CEILING_MARGIN_M = 15.0
 RADIUS_MARGIN_M = 50.0
 """The same for the radius of a fence around home."""
 
+MAX_FENCE_RADIUS_M = 10_000.0
+"""The largest circle around home that ArduPilot keeps a drone in."""
+
 MAX_DISARM_DELAY_S = 127
 """The longest that ArduPilot waits on the ground before it disarms; 0 is for ever."""
 
@@ -142,7 +145,7 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
             Parameter("DISARM_DELAY", delay_s, "with less, a drone disarms on a pond before its stay is over", "int8"),
         ]
     ceiling_m = max(return_height_m, layers.way_out_height_m(drone)) + CEILING_MARGIN_M
-    reach_m = _reach_m(farm_plan, drone) + RADIUS_MARGIN_M
+    reach_m = reach_of(farm_plan, drone) + RADIUS_MARGIN_M
     fence_why = "altitude, circle and polygons; a radius or ceiling left at its default ends the round on the way"
     found += [
         Parameter("FENCE_TYPE", 7, fence_why, "int8"),
@@ -159,8 +162,8 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
     return found
 
 
-def _reach_m(farm_plan: FarmPlan, drone: int) -> float:
-    """How far from home a drone gets."""
+def reach_of(farm_plan: FarmPlan, drone: int) -> float:
+    """Return how far from home a drone gets, in metres."""
     ponds = [farm_plan.farm.ponds[pond].sampling_point for pond in farm_plan.solution.plan.routes[drone]]
     local = LocalFrame(*farm_plan.farm.depot).to_local(np.array(ponds, dtype=np.float64))
     return float(np.hypot(*local.T).max())
