@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +16,7 @@ import pytest
 import shapely
 
 from pondhop import InvalidInput
-from pondhop.farm import Farm, read_farm
+from pondhop.farm import Farm, doubt_fault, read_farm
 from pondhop.farm.shapes import clearance_m
 
 FIELD = Path(__file__).parent / "data" / "field"
@@ -708,6 +709,30 @@ def test_guessed_places_are_doubts_until_they_are_accepted(tmp_path: Path) -> No
     assert read_farm(path, depot=DEPOT, accept=["1"]).doubts == (doubt,)
     assert read_farm(path, depot=DEPOT, accept=["2"]).doubts == ()
     assert read_farm(path, depot=DEPOT, accept=["all"]).doubts == ()
+
+
+@pytest.mark.parametrize("name", ["P, north", "it's", "a,b", "1,2,3", "$(x)"])
+def test_what_the_remedy_of_a_doubt_says_accepts_it(name: str, tmp_path: Path) -> None:
+    overlapping = [shape("Polygon", [square(0, 0)], name=name), shape("Polygon", [square(0, 0, 0.0012)], name="a")]
+    path = geojson(tmp_path, *overlapping, shape("Polygon", [square(4, 4)], name="b"))
+    doubts = read_farm(path, depot=DEPOT).doubts
+    assert doubts
+    words = shlex.split(doubt_fault(doubts).action.partition("pass ")[2])
+    assert set(words[::2]) == {"--accept"}
+    assert read_farm(path, depot=DEPOT, accept=words[1::2]).doubts == ()
+    assert read_farm(path, depot=DEPOT, accept=[",".join(words[1::2])]).doubts == ()
+    assert read_farm(path, depot=DEPOT, accept=["b, a , " + name]).doubts == ()
+
+
+def test_an_id_to_accept_that_no_pond_has_is_a_fault(tmp_path: Path) -> None:
+    path = geojson(tmp_path, *(shape("Polygon", [square(i, 0)], name=f"Pond {i}") for i in (1, 3, 5)))
+    with pytest.raises(InvalidInput) as caught:
+        read_farm(path, depot=DEPOT, accept=["Pond 1,nosuch", "Pond 33"])
+    told = [(fault.path, fault.message, fault.action) for fault in caught.value.faults]
+    assert told == [
+        ("accept", "there is no pond 'nosuch'", "give ids of ponds (Pond 1, Pond 3, Pond 5), or all"),
+        ("accept", "there is no pond 'Pond 33'", "did you mean 'Pond 3'?"),
+    ]
 
 
 def test_notes_alike_are_counted(tmp_path: Path) -> None:

@@ -55,7 +55,8 @@ def plan(
     accept: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="ID[,ID...]", help="Ponds whose guessed place you have looked at and found right, or 'all'."
+            metavar="ID[,ID...]",
+            help="Ponds whose guessed place you have looked at and found right, or 'all'; repeatable.",
         ),
     ] = None,
     sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
@@ -88,7 +89,7 @@ def plan(
             farm,
             depot=parse_lonlat("--depot", depot) if depot is not None else None,
             layers=layer or (),
-            accept=",".join(accept or ()).split(","),
+            accept=accept or (),
         )
         advance()
         farm_plan = planners.plan(read, chosen_fleet, progress=search_progress(advance), **options)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
+from shlex import quote
 
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import shapes
@@ -13,7 +15,7 @@ from pondhop.farm.coordinates import check_coordinates, wrap_longitudes
 from pondhop.farm.depot import depot_of, point_of, tell_depot_in_water
 from pondhop.farm.distances import ponds_of_one_farm
 from pondhop.farm.faults import told_faults
-from pondhop.farm.features import Feature, Source, clean_text, listed
+from pondhop.farm.features import Feature, Source, clean_text, listed, shortened
 from pondhop.farm.formats import read_source
 from pondhop.farm.model import Doubt, Farm, Pond
 from pondhop.farm.names import name_ponds
@@ -48,6 +50,7 @@ def read_farm(
         Names of the layers, sheets or folders to read; all of them if there are none.
     accept
         Ids of ponds whose place is guessed and right as it is, or ``all``; they are no doubts of the farm any more.
+        One text may hold several ids with commas between them; ids may hold commas themselves.
 
     Returns
     -------
@@ -88,7 +91,7 @@ def read_farm(
     if stations:
         are = "station is" if len(stations) == 1 else "stations are"
         source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet.")
-    ids = {draft.id for draft in drafts}
+    ids = [draft.id for draft in drafts]
     return Farm(
         clean_text(source.name) or "farm",
         tuple(Pond(draft.id, draft.sampling_point, draft.outline, draft.service_s) for draft in drafts),
@@ -97,7 +100,7 @@ def read_farm(
         tuple(no_fly),
         tuple(fences),
         source.notes.sentences(),
-        _without_accepted([doubt for doubt in doubts if doubt.pond_id in ids], accept),
+        _without_accepted([doubt for doubt in doubts if doubt.pond_id in ids], _accepted_ids(accept, ids)),
     )
 
 
@@ -182,10 +185,36 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
 
 
 def _without_accepted(doubts: Sequence[Doubt], accept: Sequence[str]) -> tuple[Doubt, ...]:
-    accepted = {name.strip() for name in accept}
-    if ACCEPT_ALL in {name.lower() for name in accepted}:
-        return ()
-    return tuple(doubt for doubt in doubts if doubt.pond_id not in accepted)
+    return tuple(doubt for doubt in doubts if doubt.pond_id not in accept)
+
+
+def _accepted_ids(accept: Sequence[str], ids: Sequence[str]) -> list[str]:
+    """Return the ids of the ponds that are accepted; an id may hold commas, and commas part ids.
+
+    Raises
+    ------
+    InvalidInput
+        With every name that no pond has.
+    """
+    known, accepted, faults = set(ids), list[str](), list[Fault]()
+    for value in accept:
+        if value.strip().lower() == ACCEPT_ALL:
+            return list(ids)
+        parts = value.split(",")
+        while parts:
+            # The longest id that the rest begins with, so that commas in ids need no quotes.
+            ends = range(len(parts), 0, -1)
+            end = next((end for end in ends if ",".join(parts[:end]).strip() in known), 0)
+            name, parts = ",".join(parts[: end or 1]).strip(), parts[end or 1 :]
+            if end:
+                accepted.append(name)
+            elif name:
+                close = get_close_matches(name, ids, n=1)
+                action = f"did you mean {close[0]!r}?" if close else f"give ids of ponds ({listed(ids)}), or all"
+                faults.append(Fault("accept", f"there is no pond {shortened(name)!r}", action))
+    if faults:
+        raise InvalidInput(faults)
+    return accepted
 
 
 def doubt_fault(doubts: Sequence[Doubt]) -> Fault:
@@ -196,7 +225,7 @@ def doubt_fault(doubts: Sequence[Doubt]) -> Fault:
     doubts
         Those of the farm; at least one.
     """
-    ids = ",".join(dict.fromkeys(doubt.pond_id for doubt in doubts))
+    options = " ".join(f"--accept {quote(name)}" for name in dict.fromkeys(doubt.pond_id for doubt in doubts))
     told = listed((doubt.message for doubt in doubts), 3)
-    action = f"correct the file; or look where these ponds are sampled, and if that is right pass --accept '{ids}'"
+    action = f"correct the file; or look where these ponds are sampled, and if that is right pass {options}"
     return Fault("farm", f"the place of a pond is a guess: {told}", action)
