@@ -191,3 +191,36 @@ def test_the_number_of_drones_that_is_told_is_enough(battery_wh: float, planner:
     if planner == "auto":
         # More drones are never worse than fewer.
         assert feasible == sorted(feasible)
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
+def test_options_that_a_planner_cannot_obey_are_told(planner: str) -> None:
+    task = pondhop.generate(12, seed=3)[0].to_problem(2)
+    asked = {"time_limit_s": 0.05, "threads": 2, "iterations": 7, "slack_percent": 3.0, "objective": "total"}
+    asked |= {"start": [list(range(6)), list(range(6, 12))]}
+    obeyed = {
+        "auto": set(asked),
+        "search": set(asked),
+        "territory": {"time_limit_s", "iterations"},
+        "ortools": {"time_limit_s"},
+        "ortools-gls": {"time_limit_s", "iterations"},
+        "pyvrp": {"time_limit_s", "iterations"},
+    }
+    solution = pondhop.solve(task, planner=planner, **asked)  # type: ignore[arg-type]
+    assert set(solution.passed_over) == set(asked) - obeyed.get(planner, set())
+    decoded = pondhop.solve(task, planner=planner, iterations=5, decoding="sampling")
+    is_network = planner.startswith("am")
+    assert ("decoding" in decoded.passed_over) != is_network
+    assert not (is_network and decoded.passed_over)
+    assert pondhop.solve(task, planner=planner, seed=7).passed_over == ()
+
+
+def test_what_is_passed_over_is_a_note_of_the_plan() -> None:
+    def by_hand(task: Problem, seed: int, time_limit_s: float | None) -> list[list[int]]:
+        return [list(range(task.num_ponds))]
+
+    for planner in ("hpp", by_hand):
+        notes = pondhop.plan(make_farm(), Fleet(2), planner=planner, objective="total", slack_percent=5.0).notes
+        assert any("has no use for what was asked for, and passed it over: slack, objective." in note for note in notes)
+    apart = pondhop.plan(make_farm(), Fleet(2), has_separate_airspace=True, objective="total")
+    assert apart.solution.passed_over == ("objective",)

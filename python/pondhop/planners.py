@@ -10,7 +10,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
@@ -71,7 +71,7 @@ ProgressFunction = Callable[[float, int, float], object]
 
 @dataclass(frozen=True)
 class Options:
-    """How hard a planner tries, and for what. A planner ignores what it has no use for.
+    """How hard a planner tries, and for what. A planner passes over what it has no use for; the solution says so.
 
     Attributes
     ----------
@@ -163,6 +163,8 @@ class Planner:
         One line for help and tables.
     run
         Plans a problem as wished.
+    obeys
+        Fields of `Options` beside seed and progress that it has a use for.
     is_airspace_shared
         Whether drones cross each other's airspace, so that separate airspace cannot be asked for.
     """
@@ -170,7 +172,23 @@ class Planner:
     name: str
     description: str
     run: Callable[[Problem, Options], Planned]
+    obeys: frozenset[str]
     is_airspace_shared: bool = False
+
+
+_OF_SEARCH = frozenset({"time_limit_s", "threads", "iterations", "slack_percent", "objective", "start"})
+_OF_TERRITORY = frozenset({"time_limit_s", "iterations", "has_separate_airspace"})
+
+
+def _passed_over(planner: Planner, options: Options) -> tuple[str, ...]:
+    """Return the options that were asked for and that the planner has no use for."""
+    obeys = planner.obeys
+    if planner.name == "auto":
+        obeys = _OF_TERRITORY if options.has_separate_airspace else _OF_SEARCH
+    elif "decoding" in obeys and options.decoding == "sampling":
+        obeys |= {"iterations"}
+    asked = [item.name for item in fields(options) if getattr(options, item.name) != item.default]
+    return tuple(name for name in asked if name not in obeys | {"seed", "progress"})
 
 
 def _search_iterations(problem: Problem, options: Options) -> int | None:
@@ -268,51 +286,60 @@ PLANNERS = {
             "auto",
             "chooses planner and effort from the size of the farm, the time limit and whether airspace is separate",
             _auto,
+            _OF_SEARCH | _OF_TERRITORY,
         ),
         Planner(
             "search",
             "the shortest longest route, then the shortest total, as good as the time allows",
             _search,
+            _OF_SEARCH,
             is_airspace_shared=True,
         ),
         Planner(
             "hpp",
             "the paper's planner: k-means clusters, each flown back and forth; a territory for every drone",
             lambda problem, options: Planned(*_core.hpp(problem, seed=options.seed)),
+            frozenset({"has_separate_airspace"}),
         ),
         Planner(
             "territory",
             "balanced and short routes, each in a territory of its own: the hulls of their ponds do not touch",
             _territory,
+            _OF_TERRITORY,
         ),
         Planner(
             "ortools",
             "OR-Tools as the paper's authors used it, who call it GLOP: descent from cheapest arcs until stuck",
             _ortools,
+            frozenset({"time_limit_s"}),
             is_airspace_shared=True,
         ),
         Planner(
             "ortools-gls",
             "OR-Tools with guided local search for a time limit",
             _ortools_gls,
+            frozenset({"time_limit_s", "iterations"}),
             is_airspace_shared=True,
         ),
         Planner(
             "pyvrp",
             "PyVRP, balanced by lowering its limit on the distance of a route as far as plans are found",
             _pyvrp,
+            frozenset({"time_limit_s", "iterations"}),
             is_airspace_shared=True,
         ),
         Planner(
             "am",
             "the paper's attention model: trained for the least total; may use more routes than there are drones",
             partial(_attention, "am50"),
+            frozenset({"decoding"}),
             is_airspace_shared=True,
         ),
         Planner(
             "am-minmax",
             "an attention model trained for the shortest longest route; never more routes than drones",
             partial(_attention, "am_minmax"),
+            frozenset({"decoding"}),
             is_airspace_shared=True,
         ),
     )
@@ -367,6 +394,7 @@ def solve(
         cpu_s=cpu_s,
         is_interrupted=planned.is_interrupted,
         reason=planned.reason,
+        passed_over=_passed_over(chosen, wishes),
     )
 
 
@@ -577,4 +605,4 @@ def _timed(function: PlannerFunction) -> Planner:
         return Planned(found, time.perf_counter() - start)
 
     name = getattr(function, "__name__", type(function).__name__)
-    return Planner(name, (function.__doc__ or "").partition("\n")[0], run)
+    return Planner(name, (function.__doc__ or "").partition("\n")[0], run, frozenset({"time_limit_s"}))

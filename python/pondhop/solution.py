@@ -42,6 +42,8 @@ class Solution:
         Whether Ctrl-C ended the planning; the plan is the best so far.
     reason
         What `auto` chose and why; empty for other planners.
+    passed_over
+        Options that were asked for and that the planner has no use for.
     known_lower_bound_s
         ``lower_bound_s`` where a file told it.
     """
@@ -55,6 +57,7 @@ class Solution:
     cpu_s: float = 0.0
     is_interrupted: bool = False
     reason: str = ""
+    passed_over: tuple[str, ...] = ()
     known_lower_bound_s: float | None = None
 
     # A bound is found when it is asked for: that takes longer than HPP, and whoever needs one does not need the other.
@@ -75,6 +78,18 @@ class Solution:
         """The plan in which every pond is the only one of its route, flown lowest: what sampling it takes at least."""
         num_ponds = self.problem.num_ponds
         return evaluate(self.problem.replace(num_drones=num_ponds, layers=None), [[pond] for pond in range(num_ponds)])
+
+    @property
+    def passed_over_text(self) -> str:
+        """A sentence about the options that the planner has no use for; empty where there are none."""
+        if not self.passed_over:
+            return ""
+        names = ", ".join(
+            name.removesuffix("_s").removesuffix("_percent").removeprefix("has_") for name in self.passed_over
+        )
+        return (
+            f"Planner {self.planner} has no use for what was asked for, and passed it over: {names.replace('_', ' ')}."
+        )
 
     @property
     def gap_percent(self) -> float | None:
@@ -241,6 +256,8 @@ class FarmPlan:
     def notes(self) -> tuple[str, ...]:
         """What the user should know before flying, a sentence each."""
         notes = list(self.farm.notes)
+        if self.solution.passed_over:
+            notes.append(self.solution.passed_over_text)
         if self.solution.reason:
             notes.append(f"Planner {self.solution.planner} chose {self.solution.reason}.")
         fast = [

@@ -84,6 +84,8 @@ def solve(
                 )
                 writer.add(solution)
                 totals.add(solution)
+                if index == 0 and solution.passed_over:
+                    typer.echo(f"Note: {solution.passed_over_text}", err=True)
                 advance()
                 if solution.is_interrupted:
                     is_stopped = True
