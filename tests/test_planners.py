@@ -216,7 +216,7 @@ def test_options_that_a_planner_cannot_obey_are_told(planner: str) -> None:
 
 
 def test_what_is_passed_over_is_a_note_of_the_plan() -> None:
-    def by_hand(task: Problem, seed: int, time_limit_s: float | None) -> list[list[int]]:
+    def by_hand(task: Problem, _seed: int, _time_limit_s: float | None) -> list[list[int]]:
         return [list(range(task.num_ponds))]
 
     for planner in ("hpp", by_hand):
