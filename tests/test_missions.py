@@ -356,10 +356,10 @@ def test_legs_stay_inside_every_fence_and_outside_no_fly_zones() -> None:
     assert [(fault.path, fault.message) for fault in check(mission)] == [
         (
             "drone-1, fence 2",
-            "4 of 5 legs are not inside it (leg from home to pond P0, leg from pond P0 to pond P3, "
+            "4 of 4 legs are not inside it (leg from home to pond P0, leg from pond P0 to pond P3, "
             "leg from pond P3 to pond P4, leg from pond P4 to home)",
         ),
-        ("drone-1, no-fly zone 1", "1 of 5 legs are not outside it (leg from home to pond P0)"),
+        ("drone-1, no-fly zone 1", "1 of 4 legs are not outside it (leg from home to pond P0)"),
     ]
     assert [rule.kind for rule in broken_rules(mission, ARDUPILOT)] == ["outside_fence", "crosses_no_fly"]
 
@@ -370,7 +370,7 @@ def test_legs_keep_a_margin_to_fences_and_no_fly_zones() -> None:
     mission = build(Fleet(num_drones=1), [2], fences=((fence,),))
     assert broken_rules(mission, ARDUPILOT, margin_m=2.5) == []
     (rule,) = broken_rules(mission, ARDUPILOT, margin_m=3.5)
-    assert "2 of 3 legs are not inside it by at least 3.5 m" in rule.fault.message
+    assert "2 of 2 legs are not inside it by at least 3.5 m" in rule.fault.message
     zone = ((-88.99999, 37.0004), (-88.999, 37.0004), (-88.999, 37.0006), (-88.99999, 37.0006), (-88.99999, 37.0004))
     mission = build(Fleet(num_drones=1), [2], no_fly=((zone,),))
     assert broken_rules(mission, ARDUPILOT, margin_m=0.5) == []
@@ -716,3 +716,11 @@ def test_a_pond_beyond_the_largest_fence_is_not_flown() -> None:
     assert violations(9_900 / 111_000) == []
     (found,) = violations(12_000 / 111_000)
     assert (found.kind, found.drone, found.limit) == ("too_far", 2, 9950.0)
+
+
+def test_home_is_no_leg() -> None:
+    # Home lies outside of the fence, and so do both ways.
+    fence = (square(-89.0, 37.0015, 0.0007),)
+    (rule,) = broken_rules(build(Fleet(num_drones=1), [2], fences=(fence,)), ARDUPILOT)
+    assert "home and 2 of 2 legs are not inside it" in rule.fault.message
+    assert (rule.value, rule.limit) == (2, 2)

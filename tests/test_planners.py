@@ -224,3 +224,22 @@ def test_what_is_passed_over_is_a_note_of_the_plan() -> None:
         assert any("has no use for what was asked for, and passed it over: slack, objective." in note for note in notes)
     apart = pondhop.plan(make_farm(), Fleet(2), has_separate_airspace=True, objective="total")
     assert apart.solution.passed_over == ("objective",)
+
+
+def test_nothing_is_told_as_less_than_nothing() -> None:
+    apart = pondhop.Problem((0.0, 0.0), [[0, 1], [1, 2], [1, 1], [0, -1], [1, -2], [1, -1]], 2)
+    overlap = _core.separation(apart, [[0, 1, 2], [3, 4, 5]]).overlap
+    total = pondhop.evaluate(apart, []).total_length
+    assert [str(overlap), str(total)] == ["0.0", "0.0"]
+
+
+def test_ponds_out_of_reach_are_told_once() -> None:
+    farm_plan = pondhop.plan(generate_farm(24, at=(-90.9, 33.4), seed=4), Fleet(2, battery_wh=5.0))
+    beyond = [found for found in farm_plan.violations if found.kind == "out_of_reach"]
+    assert len(beyond) == 24
+    (told,) = (found for found in farm_plan.told_violations if found.kind == "out_of_reach")
+    assert told.message.startswith(
+        "a pond is out of reach: alone it breaks what the battery gives above its reserve (24 ponds: "
+    )
+    assert told.message.endswith("and 19 more)")
+    assert not any("more drones" in found.remedy or "fly with" in found.remedy for found in farm_plan.violations)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pondhop import _core
 from pondhop._core import Plan, Problem, Separation, Violation, evaluate
+from pondhop.farm.features import listed
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
 from pondhop.fleet.layers import Layers
@@ -186,6 +187,31 @@ class FarmPlan:
         """Every rule that the plan breaks; empty for one that can be flown."""
         broken = self.solution.plan.violations
         return (*(self._in_words(violation) for violation in broken), *self.obstacles)
+
+    @property
+    def told_violations(self) -> tuple[FarmViolation, ...]:
+        """The violations for people to read: ponds that break the same rule are told once, with their number."""
+        ponds: dict[tuple[str, str], list[FarmViolation]] = {}
+        for violation in self.violations:
+            if violation.pond is not None:
+                ponds.setdefault((violation.kind, self._without_pond(violation)), []).append(violation)
+        told = []
+        for violation in self.violations:
+            alike = ponds.get((violation.kind, self._without_pond(violation)), [violation])
+            if len(alike) > 1 and violation.pond is not None:
+                if violation is alike[0]:
+                    names = listed(self.farm.ponds[found.pond].id for found in alike if found.pond is not None)
+                    message = f"{self._without_pond(violation)} ({counted(len(alike), 'pond')}: {names})"
+                    told.append(replace(violation, message=message, pond=None))
+            else:
+                told.append(violation)
+        return tuple(told)
+
+    def _without_pond(self, violation: FarmViolation) -> str:
+        """What a violation says of its pond, without the name of it."""
+        if violation.pond is None:
+            return violation.message
+        return violation.message.replace(f"pond {self.farm.ponds[violation.pond].id} ", "a pond ", 1)
 
     @property
     def is_feasible(self) -> bool:

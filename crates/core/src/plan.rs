@@ -126,7 +126,8 @@ impl Plan {
     /// The sum of all route lengths.
     #[must_use]
     pub fn total_length(&self) -> f64 {
-        self.routes.iter().map(|route| route.length).sum()
+        // The sum of nothing is -0.0.
+        self.routes.iter().map(|route| route.length).sum::<f64>() + 0.0
     }
 
     /// The longest route in seconds.

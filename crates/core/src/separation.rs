@@ -41,7 +41,8 @@ pub fn separation(problem: &Problem, routes: &[Vec<usize>]) -> Result<Separation
     let farm: Vec<Point> = problem.visits().iter().map(|visit| visit.position).collect();
     let farm_area = hull_area(&farm);
     // Where all ponds lie on one line there is no area to share.
-    let overlap = if farm_area > 0.0 { area_covered_twice(&routes) / farm_area } else { 0.0 };
+    // The sum of nothing is -0.0.
+    let overlap = if farm_area > 0.0 { area_covered_twice(&routes) / farm_area + 0.0 } else { 0.0 };
     let (num_crossings, num_depot_leg_crossings) = count_crossings(problem.depot().position, &routes);
     Ok(Separation { overlap, num_crossings, num_depot_leg_crossings })
 }

@@ -57,7 +57,7 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
 def print_violations(farm_plan: FarmPlan) -> None:
     """Print every rule that a plan of a farm breaks, and what to do about it."""
     console = Console(highlight=False, markup=False)
-    for violation in farm_plan.violations:
+    for violation in farm_plan.told_violations:
         drone = "" if violation.drone is None or violation.kind in LIMIT_KINDS else f"drone {violation.drone}, "
         console.print(f"Violation: {drone}{violation.message} -> {violation.remedy}", style="bold red")
 

@@ -113,7 +113,7 @@ def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
     missions = _missions(farm_plan)
     faults = [
         Fault(_place(violation), violation.message, violation.remedy)
-        for violation in _judged(farm_plan, missions).violations
+        for violation in _judged(farm_plan, missions).told_violations
         if violation.kind != "unserved"
     ]
     if not missions:

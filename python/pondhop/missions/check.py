@@ -168,13 +168,15 @@ def _area_rules(mission: Mission, margin_m: float) -> Iterator[BrokenRule]:
         is_near = shapely.distance(polygon.exterior, flown) < margin_m
         is_inside = shapely.covers(polygon, flown)
         is_broken = ~is_inside | is_near if kind == "outside_fence" else shapely.intersects(polygon, flown) | is_near
-        broken = [["home", *names][index] for index in is_broken.nonzero()[0]]
-        if broken:
+        is_home_broken, broken = bool(is_broken[0]), [names[index] for index in is_broken[1:].nonzero()[0]]
+        if broken or is_home_broken:
             told = ", ".join(broken[:MAX_LEGS_TOLD]) + (", ..." if len(broken) > MAX_LEGS_TOLD else "")
             side = "inside" if kind == "outside_fence" else "outside"
             room = f"by at least {margin_m:g} m " if margin_m > 0 else ""
-            message = f"{len(broken)} of {len(flown)} legs are not {side} it {room}({told})"
-            yield BrokenRule(kind, Fault(place, message, _AREA_REMEDY), len(broken), len(flown))
+            legs = f"{len(broken)} of {len(names)} legs"
+            what = f"home and {legs}" if is_home_broken else legs
+            message = f"{what} are not {side} it {room}({told})" if broken else f"home is not {side} it {room}".rstrip()
+            yield BrokenRule(kind, Fault(place, message, _AREA_REMEDY), len(broken), len(names))
 
 
 def _legs(mission: Mission) -> tuple[list[str], list[tuple[LonLat, LonLat]]]:
