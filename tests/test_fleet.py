@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -176,6 +177,29 @@ def test_the_remedy_for_layers_too_high_is_one() -> None:
             Fleet(**settings)  # type: ignore[arg-type]
         (fault,) = caught.value.faults
         assert fault.action.startswith(remedy)
+
+
+@pytest.mark.parametrize("kind", [np.int8, np.int64, np.uint16])
+def test_whole_numbers_of_numpy_are_numbers(kind: type[np.integer[Any]]) -> None:
+    fleet = Fleet(kind(3), speed_m_s=kind(6))  # type: ignore[arg-type]
+    assert fleet == Fleet(3, speed_m_s=6)
+    assert type(fleet.num_drones) is int
+
+
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.float64, np.longdouble])
+def test_real_numbers_of_numpy_are_numbers(kind: type[np.floating[Any]]) -> None:
+    assert Fleet(3, speed_m_s=kind(5.1)) == Fleet(3, speed_m_s=5.1)  # type: ignore[arg-type]
+    for wrong in (kind("nan"), kind("inf")):
+        with pytest.raises(InvalidInput, match="speed_m_s"):
+            Fleet(3, speed_m_s=wrong)  # type: ignore[arg-type]
+
+
+def test_a_truth_value_of_numpy_and_none_are_no_numbers() -> None:
+    for wrong in (np.True_, None):
+        with pytest.raises(InvalidInput, match="num_drones"):
+            Fleet(wrong)  # type: ignore[arg-type]
+    with pytest.raises(InvalidInput, match="speed_m_s"):
+        Fleet(3, speed_m_s=None)  # type: ignore[arg-type]
 
 
 def test_every_setting_has_a_range_and_a_source() -> None:

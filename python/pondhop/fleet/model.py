@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Literal, get_args
 
+import numpy as np
+
 from pondhop._core import Energy
 from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet import times
@@ -109,8 +111,13 @@ class Fleet:
     assumptions: tuple[str, ...] = field(default=DECISIVE, compare=False, kw_only=True)
 
     def __post_init__(self) -> None:
-        values = {item.name: getattr(self, item.name) for item in fields(self) if item.name != "assumptions"}
-        faults = setting_faults({name: value for name, value in values.items() if value is not None})
+        values = {item.name: _plain(getattr(self, item.name)) for item in fields(self) if item.name != "assumptions"}
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        optional = {item.name for item in fields(self) if item.default is None}
+        faults = setting_faults(
+            {name: value for name, value in values.items() if value is not None or name not in optional}
+        )
         if not faults:
             faults = _combined_faults(self)
         if faults:
@@ -208,6 +215,17 @@ class Fleet:
     def service_energy_j(self, service_s: float) -> float:
         """Return what a time on station takes from the battery, in joules."""
         return times.sampling_j(self, service_s)
+
+
+def _plain(value: object) -> object:
+    """Return a number of numpy as one of Python, with the digits it is written with: a float32 of 0.1 is 0.1."""
+    if isinstance(value, np.bool_):
+        return bool(value)
+    if isinstance(value, np.integer):
+        return int(value)
+    if isinstance(value, np.floating):
+        return float(str(value))
+    return value
 
 
 def setting_faults(settings: Mapping[str, object]) -> list[Fault]:
