@@ -195,3 +195,20 @@ def test_the_same_plan_gives_the_same_folder(tmp_path: Path) -> None:
         command = [PONDHOP, "plan", farm, "--drones", 3, "--iterations", 3000, "-o", tmp_path / name]
         subprocess.run(list(map(str, command)), check=True, capture_output=True)
     assert contents(tmp_path / "first") == contents(tmp_path / "second")
+
+
+def test_letters_that_no_font_has_are_noted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from pondhop.plot import fonts
+
+    # A machine with nothing but the font that matplotlib brings along, which has no Thai.
+    files = {fonts.DEFAULT_FAMILY: fonts._font_files()[fonts.DEFAULT_FAMILY]}
+    monkeypatch.setattr(fonts, "_font_files", lambda: files)
+    farm = make_farm(name="\u0e1f\u0e32\u0e23\u0e4c\u0e21")
+    farm_plan = make_plan(farm, Fleet(1), [[0, 1, 2, 3, 4]])
+    written = outputs.write_outputs(tmp_path, farm_plan, has_figure=True)
+    (note,) = (note for note in written.farm_plan.notes if note.startswith("No font of this machine"))
+    assert farm.name in note
+    assert note in json.loads(written.plan_json)["notes"]
+    crew = " ".join((tmp_path / "missions" / "README.txt").read_text("utf-8").split())
+    assert "the picture shows ? for those that are missing" in crew
+    assert outputs.write_outputs(tmp_path, farm_plan, has_figure=False).farm_plan.notes == farm_plan.notes

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pondhop.documents.atomic import Content, earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
+from pondhop.farm.features import listed
 from pondhop.files.plan_geojson import plan_geojson
 from pondhop.files.plan_json import BEGINNING, plan_json
 from pondhop.missions import earlier_missions, mission_texts
@@ -29,11 +30,14 @@ class Outputs:
         The text of ``plan.json``.
     faults
         What keeps the plan from being flown; then there are no missions.
+    farm_plan
+        The plan with what was noted while writing.
     """
 
     names: tuple[str, ...]
     plan_json: str
     faults: tuple[Fault, ...]
+    farm_plan: FarmPlan
 
 
 def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units: Units = "metric") -> Outputs:
@@ -65,6 +69,8 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     OSError
         If a file cannot be written; then the folder is as it was.
     """
+    if has_figure:
+        farm_plan = _with_note_of_letters(farm_plan)
     text = plan_json(farm_plan)
     files: dict[str, Content] = {PLAN_JSON: text, PLAN_GEOJSON: plan_geojson(farm_plan)}
     faults: tuple[Fault, ...] = ()
@@ -79,7 +85,24 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
         files |= {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
     replace_files(folder, files, _earlier(folder))
     names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
-    return Outputs(tuple(names), text, faults)
+    return Outputs(tuple(names), text, faults, farm_plan)
+
+
+def _with_note_of_letters(farm_plan: FarmPlan) -> FarmPlan:
+    """Return the plan with a note of the names that the picture cannot show, if there are any."""
+    from pondhop.plot.fonts import REPLACEMENT, lettering
+
+    farm = farm_plan.farm
+    names = [farm.name, *(pond.id for pond in farm.ponds)]
+    missing = lettering(names).missing
+    if not missing:
+        return farm_plan
+    unwritten = listed(name for name in dict.fromkeys(names) if missing & set(name))
+    note = (
+        f"No font of this machine has all letters of {unwritten}: the picture shows {REPLACEMENT} for those that are "
+        "missing. Install a font of that script, as Noto Sans, to see them."
+    )
+    return replace(farm_plan, farm=replace(farm, notes=(*farm.notes, note)))
 
 
 def _earlier(folder: Path) -> list[str]:

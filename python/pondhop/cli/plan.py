@@ -101,7 +101,7 @@ def plan(
     else:
         from pondhop.cli import printed
 
-        printed.print_farm_plan(farm_plan, units)
+        printed.print_farm_plan(written.farm_plan, units)
         typer.echo(f"Written to {output}: {', '.join(written.names)}")
         if figure is None and not is_drawn:
             typer.echo(f"No picture was drawn, because matplotlib is not installed; {INSTALL_MATPLOTLIB}")
