@@ -21,7 +21,7 @@ from pondhop import InvalidInput, Problem, instances
 from pondhop.bench import execute
 from pondhop.bench.best_known import BestKnown, BestPlan, read_best_known, write_best_known
 from pondhop.bench.farm_sets import BenchFarm, Task, generate_farm_set, read_farm_sets, tasks
-from pondhop.bench.measure import Entrant, Request, Run, TimeLimit, measure, parse_entrants
+from pondhop.bench.measure import Entrant, Request, Run, TimeLimit, measure, parse_entrants, warm_up
 from pondhop.bench.results import Results, read_results
 from pondhop.bench.summary import Comparison, markdown
 from pondhop.instances import ResearchFarm
@@ -511,3 +511,11 @@ def test_damaged_plans_are_told_by_line(tmp_path: Path, line: str) -> None:
         file.write(line + "\n")
     with pytest.raises(InvalidInput, match=r"plans\.jsonl, line 2"):
         results.routes()
+
+
+def test_a_planner_of_ones_own_that_fails_is_no_bug_of_ours() -> None:
+    def broken(task: Problem, _seed: int, _time_limit_s: float | None) -> list[list[int]]:
+        raise RuntimeError(f"no idea how to plan {task.num_ponds} ponds")
+
+    with pytest.raises(InvalidInput, match=r"mine: it raises RuntimeError: no idea how to plan 2 ponds .test_bench.py"):
+        warm_up(Entrant("mine", broken, {}))

@@ -399,3 +399,13 @@ def test_the_reference_is_what_help_says() -> None:
 def test_help_names_every_planner(run: Run) -> None:
     help_text = run("solve", "--help").out
     assert all(name in help_text for name in planners.PLANNERS)
+
+
+@pytest.mark.parametrize("command", ["plot", "evaluate"])
+def test_plans_of_research_farms_need_their_farms(run: Run, farms: Path, tmp_path: Path, command: str) -> None:
+    plans = tmp_path / "plans.json"
+    run("solve", farms, "--routes", 2, "-o", plans)
+    ran = run(command, plans, *(["-o", tmp_path / "plan.png"] if command == "plot" else []))
+    assert ran.code == 2
+    assert "pass --farms with the file of farms" in ran.err
+    assert len(ran.err) < 400

@@ -6,9 +6,12 @@ import dataclasses
 import importlib
 import math
 import platform
-from collections.abc import Mapping
+import traceback
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -248,7 +251,8 @@ def warm_up(entrant: Entrant) -> None:
     """
     problem = Problem((0.0, 0.0), np.array([[0.0, 1.0], [1.0, 0.0]]), 2)
     options = {"iterations": 1, "time_limit_s": SECONDS_OF_WARM_UP} | dict(entrant.options)
-    planners.solve(problem, planner=entrant.planner, **options)
+    with _told_of(entrant):
+        planners.solve(problem, planner=entrant.planner, **options)
 
 
 def measure(request: Request) -> tuple[Run, list[list[int]]]:
@@ -268,9 +272,10 @@ def measure(request: Request) -> tuple[Run, list[list[int]]]:
     problem = farm.farm.to_problem(request.task.num_routes)
     time_limit_s = request.time_limit.of(num_ponds)
     entrant = request.entrant
-    solution = planners.solve(
-        problem, planner=entrant.planner, seed=request.seed, time_limit_s=time_limit_s, **entrant.options
-    )
+    with _told_of(entrant):
+        solution = planners.solve(
+            problem, planner=entrant.planner, seed=request.seed, time_limit_s=time_limit_s, **entrant.options
+        )
     plan = solution.plan
     separation = _core.separation(problem, plan.routes)
     run = Run(
@@ -301,3 +306,20 @@ def measure(request: Request) -> tuple[Run, list[list[int]]]:
         finished_at=datetime.now(UTC).isoformat(timespec="seconds"),
     )
     return run, plan.routes
+
+
+@contextmanager
+def _told_of(entrant: Entrant) -> Iterator[None]:
+    """Say of a planner of the user's own that fails that it is theirs, and how."""
+    try:
+        yield
+    except InvalidInput:
+        raise
+    except Exception as error:
+        if not callable(entrant.planner):
+            raise
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        message = f"it raises {type(error).__name__}: {error} ({Path(where.filename).name}, line {where.lineno})"
+        raise InvalidInput(
+            [Fault(entrant.label, message, "correct the planner, and try it with pondhop.solve")]
+        ) from error

@@ -127,6 +127,7 @@ def evaluate(
         from pondhop import missions
         from pondhop.files.plan_json import read_plan_json
 
+        _check_plan_of_farm(plans)
         farm_plan = missions.judged(read_plan_json(plans))
         if as_json:
             typer.echo(plans.read_text(), nl=False)
@@ -167,6 +168,7 @@ def plot(
             from pondhop import missions
             from pondhop.files.plan_json import read_plan_json
 
+            _check_plan_of_farm(plans)
             axes = figures.plot_plan(missions.judged(read_plan_json(plans)))
         else:
             farm, routes = _farm_and_routes(plans, farms, index)
@@ -239,3 +241,16 @@ def _check_same_number(farms: list[ResearchFarm], routes: list[list[list[int]]])
     if len(farms) != len(routes):
         message = f"{len(routes)} plans for {len(farms)} farms"
         raise InvalidInput([Fault("--farms", message, "give the farms that were solved, in the same order")])
+
+
+def _check_plan_of_farm(path: Path) -> None:
+    """Ask for the farms where a file holds plans of research farms: a list, and no ``plan.json``."""
+    try:
+        with path.open("rb") as file:
+            is_list = file.read(4096).lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"[")
+    except OSError:
+        # Whoever reads it tells what is wrong.
+        return
+    if is_list:
+        action = "pass --farms with the file of farms that they are for"
+        raise InvalidInput([Fault(str(path), "it holds plans of research farms, and nothing says of which", action)])
