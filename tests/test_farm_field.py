@@ -16,6 +16,7 @@ import shapely
 
 from pondhop import InvalidInput
 from pondhop.farm import Farm, read_farm
+from pondhop.farm.archives import Room
 from pondhop.farm.shapes import clearance_m
 
 FIELD = Path(__file__).parent / "data" / "field"
@@ -577,6 +578,51 @@ def test_files_of_an_archive_are_layers(tmp_path: Path) -> None:
         archive.writestr("Farm/no_fly.geojson", geojson(tmp_path, polygon(4, 4, name="School")).read_text())
     assert "School" in str(read_farm(path, depot=DEPOT).notes)
     assert ids(read_farm(path, depot=DEPOT, layers=["ponds"])) == PONDS[:3]
+
+
+def packed(folder: Path, members: Mapping[str, str | bytes], name: str = "farm.zip") -> Path:
+    path = folder / name
+    with zipfile.ZipFile(path, "w") as archive:
+        for member, content in members.items():
+            archive.writestr(member, content)
+    return path
+
+
+def test_everything_in_an_archive_is_read_or_told(tmp_path: Path) -> None:
+    farm = geojson(tmp_path, *ponds()).read_text()
+    corners = ", ".join(f"{lon} {lat}" for lon, lat in square(5, 5))
+    table_of_area = f'wkt,name\n"POLYGON (({corners}))",No fly\n'
+    map_of_area = kml(tmp_path, placemark("No fly", kml_polygon(5, 5))).read_text()
+    kmz = packed(tmp_path, {"doc.kml": map_of_area}, "nofly.kmz").read_bytes()
+    inner = packed(tmp_path, {"deep/nofly.kmz": kmz}, "inner.zip").read_bytes()
+    for name, content in (
+        *(("nofly.csv", table_of_area), ("nofly.kmz", kmz), ("inner.zip", inner), ("nofly.txt", table_of_area)),
+        ("nofly", map_of_area),
+    ):
+        read = read_farm(packed(tmp_path, {"ponds.geojson": farm, name: content}), depot=DEPOT)
+        assert (ids(read), len(read.no_fly)) == (PONDS[:3], 1), name
+    tables = {"ponds.geojson": farm, "depot.csv": "lat,lon\n10.0995,105.6985\n"}
+    assert read_farm(packed(tmp_path, tables)).depot == DEPOT
+    others: dict[str, str | bytes] = {"nofly.rar": b"Rar!", "readme.txt": "Hello", "samples.csv": "pond,oxygen\n1,4\n"}
+    others |= {"lone.dbf": b"x", "photos.zip": packed(tmp_path, {"a.jpg": b"x"}, "p.zip").read_bytes(), "map.pdf": b"%"}
+    [note] = read_farm(packed(tmp_path, {"ponds.geojson": farm, **others}), depot=DEPOT).notes
+    assert all(repr(name) in note for name in others), note
+    icon = (
+        placemark("A", kml_polygon(0, 0))
+        + "<Style><IconStyle><Icon><href>files/i.png</href></Icon></IconStyle></Style>"
+    )
+    with_icon = {"doc.kml": kml(tmp_path, icon).read_text(), "files/i.png": b"x", "__MACOSX/._doc.kml": b"x"}
+    assert read_farm(packed(tmp_path, with_icon), depot=DEPOT).notes == ()
+    broken = packed(tmp_path, {"ponds.geojson": farm, "nofly.kmz": b"PK\x03\x04"})
+    assert faults_of(broken, depot=DEPOT)[0][0] == "nofly.kmz"
+
+
+def test_archives_in_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Room.__init__, "__defaults__", (50_000, 0))
+    inner = packed(tmp_path, {"a.csv": "x" * 20_000}, "a.zip").read_bytes()
+    farm = geojson(tmp_path, *ponds()).read_bytes()
+    nested = packed(tmp_path, {"farm.geojson": farm, "1.zip": inner, "2.zip": inner})
+    assert any("would unpack to" in message for _, message, _ in faults_of(nested, depot=DEPOT))
 
 
 def test_pipes_devices_and_links_to_other_files_are_not_opened(tmp_path: Path) -> None:
