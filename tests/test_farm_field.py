@@ -17,6 +17,7 @@ import shapely
 from pondhop import InvalidInput
 from pondhop.farm import Farm, read_farm
 from pondhop.farm.archives import Room
+from pondhop.farm.formats import read_source
 from pondhop.farm.shapes import clearance_m
 
 FIELD = Path(__file__).parent / "data" / "field"
@@ -474,6 +475,49 @@ def test_south_and_west_are_negative(tmp_path: Path, text: str) -> None:
     assert pond.sampling_point == pytest.approx((-79.9009, -2.3004), abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("text", "sign"),
+    [
+        ("Name;Breite;Länge\nTeich 1;53,1 N;9,5 O\n", 1),
+        ("Name;Breitengrad;Längengrad\nA;53°06'00\"N;9°30'00\"O\n", 1),
+        ("Naam;Breedte;Lengte\nA;53,1 N;9,5 O\n", 1),
+        ("Naam;Breedtegraad;Lengtegraad\nA;53,1 Noord;9,5 Oost\n", 1),
+        ("Name;Breite;Länge;EW\nA;53,1;9,5;O\n", 1),
+        ("Name;Breite;Länge (O)\nA;53,1;9,5\n", 1),
+        ("Teich;Koordinaten\nA;53.1 N, 9.5 O\n", 1),
+        ("name;lat;lon\nA;53,1 N;9,5 O\nB;53,1 N;0,001 W\n", 1),
+        ("name;lat;lon\nTeich 1;53,1 N;9,5 O\n", 1),
+        ("nombre,latitud,longitud\nA,53.1 N,9.5 O\n", -1),
+        ("nombre,Latitud (N),Longitud (O)\nA,53.1,9.5\n", -1),
+        ("nom,latitude,longitude\nA,53.1 N,9.5 O\n", -1),
+        ("nome,latitudine,longitudine\nA,53.1 N,9.5 O\n", -1),
+        ("viveiro,latitude,longitude,ew\nA,53.1,9.5,O\n", -1),
+        ("name,lat,lon\nÉtang 1,53.1 N,9.5 O\n", -1),
+        ("name,lat,lon\nA,53.1 N,9.5 Ouest\n", -1),
+        ("name,lat,lon\nA,53.1 N,9.5 O\nB,53.1 N,0.001 E\n", -1),
+    ],
+)
+def test_the_letter_o_is_east_or_west_by_language(tmp_path: Path, text: str, sign: int) -> None:
+    layers = read_source(table(tmp_path, text))
+    assert layers.faults == []
+    assert layers.features[0].geometry.points == [pytest.approx((sign * 9.5, 53.1))]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "name,lat,lon\nA,3.4 S,60.9 O\nB,3.401 S,60.9 O\n",
+        "name,lat,lon,ew\nA,3.4,60.9,O\n",
+        "name,lat,Lon (O)\nA,3.4,60.9\n",
+        "name,latitude,longitude\nTeich,3.4 S,60.9 O\nEstanque,3.401 S,60.9 O\n",
+    ],
+)
+def test_the_letter_o_without_a_language_is_a_fault_that_asks(tmp_path: Path, text: str) -> None:
+    [(_, message, action)] = faults_of(table(tmp_path, text), depot=(-60.9, -3.4))
+    assert "O is east in German and Dutch, and west in Spanish" in message
+    assert action == "write E or W"
+
+
 def test_contradictions_of_sign_and_letter_are_faults(tmp_path: Path) -> None:
     faults = faults_of(table(tmp_path, "name,lat,NS,lon,EW\nA,-2.3,N,79.9,Q\n"), depot=DEPOT)
     assert [path for path, _, _ in faults] == ["line 2, column lat"]
@@ -620,9 +664,9 @@ def test_everything_in_an_archive_is_read_or_told(tmp_path: Path) -> None:
 def test_archives_in_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Room.__init__, "__defaults__", (50_000, 0))
     inner = packed(tmp_path, {"a.csv": "x" * 20_000}, "a.zip").read_bytes()
-    farm = geojson(tmp_path, *ponds()).read_bytes()
-    nested = packed(tmp_path, {"farm.geojson": farm, "1.zip": inner, "2.zip": inner})
-    assert any("would unpack to" in message for _, message, _ in faults_of(nested, depot=DEPOT))
+    members: dict[str, str | bytes] = {"1.zip": inner, "2.zip": inner}
+    members["farm.geojson"] = geojson(tmp_path, *ponds()).read_text()
+    assert any("would unpack to" in message for _, message, _ in faults_of(packed(tmp_path, members), depot=DEPOT))
 
 
 def test_pipes_devices_and_links_to_other_files_are_not_opened(tmp_path: Path) -> None:

@@ -29,7 +29,10 @@ _AFTER = (
     r"(?:coordenada|coordinate|coord|coor)?(?:deg|degrees|degree|dd|wgs84|decimal|decimals|epsg4326|grados|graus|gps|dms|gms|"
     r"decimaldegrees|gradosdecimales|grausdecimais)?"
 )
-_SIDE = r"(?P<side>north|south|east|west|norte|sur|sul|este|leste|oeste|[nsew])?"
+_SIDE = (
+    r"(?P<side>north|south|east|west|norte|sur|sul|este|leste|oeste|"
+    r"nord|süd|sud|ost|oost|noord|zuid|ouest|ovest|[nsewo])?"
+)
 _CORNERS = {
     **dict.fromkeys(("ul", "tl", "nw", "upperleft", "topleft", "northwest"), 0),
     **dict.fromkeys(("ll", "bl", "sw", "lowerleft", "bottomleft", "southwest"), 1),
@@ -64,11 +67,13 @@ class Columns:
     sides
         Column with the letter of the hemisphere for each axis.
     signs
-        What a heading such as ``Lat (S)`` says about positive numbers.
+        What a heading such as ``Lat (S)`` says about positive numbers; 0 for the letter O.
     zone
         The column with the zone of UTM; then `corners` are easting and northing.
     pair
         A column that holds latitude and longitude, as map programs copy them.
+    sign_of_o
+        What the letter O says about a longitude.
     """
 
     names: tuple[str, ...]
@@ -79,6 +84,7 @@ class Columns:
     signs: dict[Axis, int] = field(default_factory=dict)
     zone: int | None = None
     pair: int | None = None
+    sign_of_o: int = -1
 
     def used(self) -> set[int]:
         """Indices of the columns that tell where a pond is."""
@@ -141,7 +147,7 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
             source.faults.append(Fault(place, message, "keep one of them"))
             return None
         found[axis, corner] = index
-        if sign < 0:
+        if sign <= 0:
             signs[axis] = sign
     pair = _pair_column(plain, rows) if not found and wkt is None else None
     if pair is not None:

@@ -10,12 +10,14 @@ import csv
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pondhop.errors import Fault
 from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
 from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees
 from pondhop.farm.features import Feature, Geometry, Source, is_blank, listed, normal_name, shortened
+from pondhop.farm.letter_o import sign_of_o
 from pondhop.farm.projections import reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
 from pondhop.places import LonLat
@@ -133,6 +135,9 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> None:
     if not below:
         source.faults.append(Fault("file", "the table has no line but the first", "add a line for each pond"))
         return
+    columns = replace(columns, sign_of_o=sign_of_o(columns, below, word, source))
+    if not columns.sign_of_o:
+        return
     features: list[Feature] = []
     zones: dict[str, list[Feature]] = {}
     for number, row in below:
@@ -190,7 +195,7 @@ def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) 
             if len(parts) != 2:
                 source.faults.append(Fault(column, "the cell holds no pair of numbers", "write latitude, longitude"))
                 return None
-            lat, lon = parse_degrees(parts[0], "lat"), parse_degrees(parts[1], "lon")
+            lat, lon = parse_degrees(parts[0], "lat"), parse_degrees(parts[1], "lon", columns.sign_of_o)
             if lat is None or lon is None:
                 shown = shortened(cells[columns.pair].strip())
                 source.faults.append(Fault(column, f"{shown!r} is no number", "write latitude, longitude in degrees"))
@@ -224,12 +229,12 @@ def _number(
     if is_blank(cell):
         source.faults.append(Fault(place, "the cell is empty", "fill in decimal degrees, or delete the line"))
         return None
-    number = metres(cell) if columns.zone is not None else parse_degrees(cell, axis)
+    number = metres(cell) if columns.zone is not None else parse_degrees(cell, axis, columns.sign_of_o)
     if number is None:
         action = "write metres, as in 576800" if columns.zone is not None else "write decimal degrees, as in -89.17"
         source.faults.append(Fault(place, f"{shortened(cell.strip())!r} is no number", action))
         return None
-    sign, told = columns.signs.get(axis, 1), "its heading"
+    sign, told = columns.signs.get(axis, 1) or columns.sign_of_o, "its heading"
     if axis in columns.sides:
         letter = cells[columns.sides[axis]]
         side = hemisphere(letter)
@@ -239,7 +244,7 @@ def _number(
                 Fault(place, f"{shortened(letter)!r} in {told} is no hemisphere", "write N, S, E or W")
             )
             return None
-        sign = side[1] if side is not None else 1
+        sign = side[1] or columns.sign_of_o if side is not None else 1
         if number < 0.0 < sign and side is not None:
             message = f"{cell.strip()} is negative, but {told} says {letter.strip()}"
             source.faults.append(Fault(place, message, "correct the sign, or the letter"))
