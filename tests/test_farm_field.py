@@ -518,6 +518,52 @@ def test_the_letter_o_without_a_language_is_a_fault_that_asks(tmp_path: Path, te
     assert action == "write E or W"
 
 
+UTM = "name,easting,northing,zone"
+
+
+def test_zone_s_of_utm_is_a_fault_that_asks_where_it_may_be_a_band(tmp_path: Path) -> None:
+    for zone, northing in (("15S", 3698000), ("15 s", 4400000), ("UTM 15S", 2500000)):
+        text = f"{UTM}\nA,322000,{northing},{zone}\nB,322200,{northing},{zone}\n"
+        [(place, message, action)] = faults_of(table(tmp_path, text))
+        assert place == "line 2, column zone"
+        assert message.endswith("is 15 north or south? S is a band of latitudes in the north, and the southern half")
+        assert action == "write 15 north or 15 south"
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "expected"),
+    [
+        (f"{UTM}\nA,322000,3698000,15 north\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM},hemisphere\nA,322000,3698000,15S,N\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM},hemisphere\nA,322000,3698000,15,N\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM},hem\nA,620000,9620000,17,Sur\n", {"depot": (-79.92, -3.43)}, (-79.92, -3.43)),
+        (f"{UTM}\nA,322000,3698000,EPSG:32615\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM}\nA,322000,3698000,15S\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM}\nA,322000,3530000,15R\nB,322200,3541000,15S\n", {"depot": (-94.9, 31.9)}, (-94.88, 31.89)),
+        (f"{UTM}\nA,620000,9620000,17S\n", {"depot": (-79.92, -3.43)}, (-79.92, -3.43)),
+        (f"{UTM}\nA,620000,9620000,17M\n", {"depot": (-79.92, -3.43)}, (-79.92, -3.43)),
+    ],
+)
+def test_the_half_of_a_zone_of_utm_is_known(
+    tmp_path: Path, text: str, options: dict[str, tuple[float, float]], expected: tuple[float, float]
+) -> None:
+    assert read_farm(table(tmp_path, text), **options).ponds[0].sampling_point == pytest.approx(expected, abs=0.02)  # type: ignore[arg-type]
+
+
+def test_another_file_tells_the_half_of_a_zone(tmp_path: Path) -> None:
+    place = geojson(tmp_path, shape("Point", [-94.91, 33.4], role="depot")).read_text()
+    files = {"ponds.csv": f"{UTM}\nA,322000,3698000,15S\n", "depot.geojson": place}
+    [pond] = read_farm(packed(tmp_path, files)).ponds
+    assert pond.sampling_point == pytest.approx((-94.9, 33.4), abs=0.02)
+
+
+def test_a_zone_without_its_half_is_one_fault_a_line(tmp_path: Path) -> None:
+    text = f"{UTM}\nA,620000,9620000,17\nB,620200,9620100,17\n"
+    faults = faults_of(table(tmp_path, text), depot=(-79.92, -3.43))
+    assert [message for _, message, _ in faults] == ["'A': '17' is no zone of UTM", "'B': '17' is no zone of UTM"]
+    assert "column hemisphere" in faults[0][2]
+
+
 def test_contradictions_of_sign_and_letter_are_faults(tmp_path: Path) -> None:
     faults = faults_of(table(tmp_path, "name,lat,NS,lon,EW\nA,-2.3,N,79.9,Q\n"), depot=DEPOT)
     assert [path for path, _, _ in faults] == ["line 2, column lat"]
@@ -655,7 +701,11 @@ def test_everything_in_an_archive_is_read_or_told(tmp_path: Path) -> None:
         placemark("A", kml_polygon(0, 0))
         + "<Style><IconStyle><Icon><href>files/i.png</href></Icon></IconStyle></Style>"
     )
-    with_icon = {"doc.kml": kml(tmp_path, icon).read_text(), "files/i.png": b"x", "__MACOSX/._doc.kml": b"x"}
+    with_icon: dict[str, str | bytes] = {
+        "doc.kml": kml(tmp_path, icon).read_text(),
+        "files/i.png": b"x",
+        "__MACOSX/._doc.kml": b"x",
+    }
     assert read_farm(packed(tmp_path, with_icon), depot=DEPOT).notes == ()
     broken = packed(tmp_path, {"ponds.geojson": farm, "nofly.kmz": b"PK\x03\x04"})
     assert faults_of(broken, depot=DEPOT)[0][0] == "nofly.kmz"

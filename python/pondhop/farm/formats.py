@@ -203,6 +203,8 @@ def _add_layer(entry: Unpacked, inner: Source, source: Source, *, has_siblings: 
     """Add what a file of an archive holds."""
     stem = Path(entry.member).stem
     if has_siblings:
+        for zone in inner.open_zones:
+            zone.place = f"{entry.member}, {zone.place}"
         for feature in inner.features:
             feature.place = f"{entry.member}, {feature.place}"
             feature.property_place = f"{entry.member}, {feature.property_place}"
@@ -211,6 +213,7 @@ def _add_layer(entry: Unpacked, inner: Source, source: Source, *, has_siblings: 
     elif inner.name != entry.path.stem:
         source.name = inner.name
     source.features.extend(inner.features)
+    source.open_zones.extend(inner.open_zones)
     source.layers.extend(inner.layers)
     for fault in inner.faults:
         place = fault.path.replace(str(entry.path.resolve()), entry.member).replace(str(entry.path), entry.member)

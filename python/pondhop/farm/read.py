@@ -18,6 +18,7 @@ from pondhop.farm.formats import read_source
 from pondhop.farm.model import Doubt, Farm, Pond
 from pondhop.farm.names import name_ponds
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
+from pondhop.farm.projections import settle_zones
 from pondhop.farm.roles import Sorted, sort_by_role
 from pondhop.places import Area, LonLat
 
@@ -62,6 +63,7 @@ def read_farm(
     """
     with _collection_paused():
         source = read_source(Path(path), layers)
+        settle_zones(source, depot)
         features = list(source.features)
         told = _sorted(source)
         drafts = read_ponds(told, source)

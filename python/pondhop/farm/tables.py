@@ -16,9 +16,9 @@ from pondhop.errors import Fault
 from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
 from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees
-from pondhop.farm.features import Feature, Geometry, Source, is_blank, listed, normal_name, shortened
+from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank, listed, normal_name, shortened
 from pondhop.farm.letter_o import sign_of_o
-from pondhop.farm.projections import reproject, utm_crs
+from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
 from pondhop.places import LonLat
 
@@ -109,6 +109,7 @@ def read_sheet_rows(sheets: dict[str, list[list[str]]], source: Source) -> None:
         source.notes.add(f"Left out, because they have no coordinates: sheets {listed(map(repr, failed))}.")
     for inner in (readable or failed).values():
         source.features.extend(inner.features)
+        source.open_zones.extend(inner.open_zones)
         source.faults.extend(inner.faults)
         for sentence in inner.notes.sentences():
             source.notes.add(sentence)
@@ -139,25 +140,46 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> None:
     if not columns.sign_of_o:
         return
     features: list[Feature] = []
-    zones: dict[str, list[Feature]] = {}
+    zones: dict[str | int, list[Feature]] = {}
+    has_bands = any(
+        names_band(row[columns.zone]) for _, row in below if columns.zone is not None and columns.zone < len(row)
+    )
     for number, row in below:
         feature = _read_row(f"{word} {number}", row, columns, source)
         if feature is None:
             continue
-        features.append(feature)
         if columns.zone is not None:
-            zone = utm_crs(row[columns.zone]) if columns.zone < len(row) else None
+            zone = _zone(feature, row, columns, source, has_bands=has_bands)
             if zone is None:
-                place = feature.property_place.format(columns.names[columns.zone])
-                message = (
-                    f"{shortened(row[columns.zone].strip() if columns.zone < len(row) else '')!r} is no zone of UTM"
-                )
-                source.faults.append(Fault(place, message, "write number and hemisphere, as in 48N or 17S"))
-            else:
-                zones.setdefault(zone, []).append(feature)
+                continue
+            zones.setdefault(zone, []).append(feature)
+        features.append(feature)
     for zone, members in zones.items():
-        reproject(zone, f"column {columns.names[columns.zone or 0]}", members, source)
-    source.features.extend(_joined_corners(features, columns, source))
+        if isinstance(zone, str):
+            reproject(zone, f"column {columns.names[columns.zone or 0]}", members, source)
+    joined = _joined_corners(features, columns, source)
+    for zone, members in zones.items():
+        if isinstance(zone, int):
+            places = {feature.place for feature in members}
+            told = members[0].property_place.format(columns.names[columns.zone or 0])
+            source.open_zones.append(OpenZone(zone, told, [feature for feature in joined if feature.place in places]))
+    source.features.extend(joined)
+
+
+def _zone(
+    feature: Feature, row: Sequence[str], columns: Columns, source: Source, *, has_bands: bool
+) -> str | int | None:
+    """The coordinate system of a line with a zone of UTM, or its fault."""
+    cells = ["" if index is None or index >= len(row) else row[index] for index in (columns.zone, columns.zone_side)]
+    side = hemisphere(cells[1])
+    northing_m = feature.geometry.points[0][1] if feature.geometry.points else 0.0
+    zone = utm_crs(cells[0], side[1] if side else 0, northing_m, has_bands=has_bands)
+    if zone is None:
+        place = feature.property_place.format(columns.names[columns.zone or 0])
+        action = "write number and hemisphere, as in 48N or 17S, or add a column hemisphere"
+        told = f"{shortened(feature.name)!r}: " if feature.name else ""
+        source.faults.append(Fault(place, f"{told}{shortened(cells[0].strip())!r} is no zone of UTM", action))
+    return zone
 
 
 def _header(rows: Sequence[Row], word: str, source: Source) -> tuple[int, Columns | None]:
