@@ -15,7 +15,7 @@ import pytest
 import shapely
 
 from pondhop import InvalidInput
-from pondhop.farm import Farm, read_farm
+from pondhop.farm import Farm, doubt_fault, read_farm
 from pondhop.farm.archives import Room
 from pondhop.farm.formats import read_source
 from pondhop.farm.shapes import clearance_m
@@ -290,6 +290,67 @@ def test_a_pond_called_after_something_else_stays_a_pond(tmp_path: Path, name: s
 )
 def test_words_count_only_whole(tmp_path: Path, name: str) -> None:
     assert ids(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)) == [*PONDS[:3], name]
+
+
+@pytest.mark.parametrize("name", ["Old Mill", "Zwinger 3", "Maneki", "Fazendinha", "Kennel", "ตึก", "别墅", "منتجع"])
+def test_what_is_not_called_like_all_other_ponds_is_in_doubt(tmp_path: Path, name: str) -> None:
+    for others in (
+        [f"Pond {number}" for number in range(1, 7)],
+        [f"{number}" for number in range(1, 7)],
+        [f"塘{number}号" for number in range(1, 5)],
+        ["North pond", "Lily pond", "Big Lake", "Étang vert", "Ao số 5"],
+    ):
+        features = [polygon(index, 0, name=other) for index, other in enumerate(others)]
+        path = geojson(tmp_path, *features, polygon(5, 5, name=name))
+        [doubt] = read_farm(path, depot=DEPOT).doubts
+        assert doubt.pond_id == name
+        assert f"is {name!r} a pond? The others are called {others[0]!r}" in doubt.message
+        assert "role" in doubt_fault([doubt]).action
+        assert read_farm(path, depot=DEPOT, accept=[name]).doubts == ()
+    sure = polygon(5, 5, name=name, role="pond")
+    assert read_farm(geojson(tmp_path, *ponds(6), sure), depot=DEPOT).doubts == ()
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["Alpha", "Beta", "Gamma", "Delta", "Epsilon", "Zeta", "Eta"],
+        ["Pond 1", "Pond 2", "Pond 3", "Pond 4", "Pond 5", "Big Tom", "Lucy", "Old Joe"],
+        [*PONDS, "Nursery 1", "Norte 4", "A7", "3b", "Tilapia 2", "Untitled Polygon"],
+        [*(f"Bloc {n}" for n in range(1, 9)), *(f"Crique {n}" for n in range(1, 4))],
+        ["North", "South", "Big pond", "Old pond", "Lily pond", "Frog pond", "Long pond"],
+        [f"Casita {n}" for n in range(1, 7)],
+        ["12-A", "12-B", "13-A", "13-B", "14-A", "R1"],
+    ],
+)
+def test_farms_with_names_of_their_own_are_in_no_doubt(tmp_path: Path, names: list[str]) -> None:
+    features = [polygon(index, 0, name=name) for index, name in enumerate(names)]
+    farm = read_farm(geojson(tmp_path, *features), depot=DEPOT)
+    assert (len(farm.ponds), farm.doubts) == (len(names), ())
+
+
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        ("N.F.Z.", 1),
+        ("Runway", 1),
+        ("Airstrip 2", 1),
+        ("跑道", 1),
+        ("Farmhouse", 0),
+        ("学校", 0),
+        ("Masjid", 0),
+        ("ruộng lúa", 0),
+    ],
+)
+def test_words_for_what_lies_beside_ponds(tmp_path: Path, name: str, count: int) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)
+    assert (ids(farm), len(farm.no_fly)) == (PONDS[:3], count)
+
+
+@pytest.mark.parametrize("name", ["Geozaun", "Clôture", "Cerca", "Hàng rào", "รั้ว", "围栏", "柵", "울타리", "Geofence"])
+def test_words_for_fences(tmp_path: Path, name: str) -> None:
+    around = [[[105.69, 10.09], [105.72, 10.09], [105.72, 10.12], [105.69, 10.12], [105.69, 10.09]]]
+    assert len(read_farm(geojson(tmp_path, *ponds(6), shape("Polygon", around, name=name)), depot=DEPOT).fences) == 1
 
 
 def test_a_role_wins_over_every_name(tmp_path: Path) -> None:

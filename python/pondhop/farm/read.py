@@ -17,6 +17,7 @@ from pondhop.farm.features import Feature, Source, clean_text, listed
 from pondhop.farm.formats import read_source
 from pondhop.farm.model import Doubt, Farm, Pond
 from pondhop.farm.names import name_ponds
+from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
 from pondhop.farm.roles import Sorted, sort_by_role
@@ -74,7 +75,7 @@ def read_farm(
         found_depot = depot_of(told, depot, source)
         stations = [point for feature in told.stations if (point := point_of(feature, "station", source)) is not None]
         no_fly, fences = _areas(told, drafts, source)
-        doubts = _doubts(drafts, source)
+        doubts = [*_doubts(drafts, source), *_told_odd(drafts, told, source)]
         drafts = ponds_of_one_farm(
             drafts,
             found_depot,
@@ -183,6 +184,14 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     return doubts
 
 
+def _told_odd(drafts: Sequence[Draft], told: Sorted, source: Source) -> list[Doubt]:
+    """Ponds that are not called like the others, with a note each."""
+    doubts = odd_names(drafts, told.sure)
+    for doubt in doubts:
+        source.notes.add(f"{doubt.message}.", kind="odd names")
+    return doubts
+
+
 def _without_accepted(doubts: Sequence[Doubt], accept: Sequence[str]) -> tuple[Doubt, ...]:
     accepted = {name.strip() for name in accept}
     if ACCEPT_ALL in {name.lower() for name in accepted}:
@@ -201,4 +210,6 @@ def doubt_fault(doubts: Sequence[Doubt]) -> Fault:
     ids = ",".join(dict.fromkeys(doubt.pond_id for doubt in doubts))
     told = listed((doubt.message for doubt in doubts), 3)
     action = f"correct the file; or look where these ponds are sampled, and if that is right pass --accept '{ids}'"
+    if any(": is " in doubt.message for doubt in doubts):
+        action = f"give what is no pond a role, as in no_fly or other; {action}"
     return Fault("farm", f"the place of a pond is a guess: {told}", action)

@@ -35,3 +35,9 @@ def hemisphere_words() -> dict[str, tuple[str, ...]]:
 def letter_o_words() -> dict[str, frozenset[str]]:
     """Words of the languages in which the letter O is east, and of those in which it is west."""
     return {side: frozenset(word.casefold() for word in _parted(text)) for side, text in _tables()["letter_o"].items()}
+
+
+@cache
+def pond_like_words() -> frozenset[str]:
+    """Words in names of ponds that are no words for ponds."""
+    return frozenset(word.casefold() for word in _parted(_tables()["pond_like"]["words"]))
