@@ -896,6 +896,22 @@ def test_a_place_that_may_be_the_depot_is_offered_and_never_sampled(tmp_path: Pa
     assert ids(read_farm(path, depot=DEPOT)) == PONDS[:3]
 
 
+@pytest.mark.parametrize("width_deg", [1e-7, 1e-6, 1e-5, 1.7e-5])
+def test_a_pond_without_room_for_a_drone_is_in_doubt(tmp_path: Path, width_deg: float) -> None:
+    south, north = 10.103, 10.103 + width_deg
+    ring = [[105.7, south], [105.701, south], [105.701, north], [105.7, north], [105.7, south]]
+    sampled = [
+        shape("Polygon", [ring], name="Pond 9"),
+        shape("Polygon", [ring], name="P", sampling_point=[105.7, south]),
+    ]
+    for thin in sampled:
+        farm = read_farm(geojson(tmp_path, *ponds(), thin), depot=DEPOT)
+        assert [doubt.pond_id for doubt in farm.doubts] == [thin["properties"]["name"]]  # type: ignore[index]
+        assert "m wide where it is widest" in farm.doubts[0].message
+    wide = [[lon, lat if lat == south else south + 3e-5] for lon, lat in ring]
+    assert read_farm(geojson(tmp_path, *ponds(), shape("Polygon", [wide], name="Pond 9")), depot=DEPOT).doubts == ()
+
+
 CORNERS = "pond_id,lat_ul,lon_ul,lat_ur,lon_ur,lat_ll,lon_ll,lat_lr,lon_lr\n"
 
 

@@ -26,6 +26,12 @@ from pondhop.places import Area, LonLat
 ACCEPT_ALL = "all"
 """Accepts every doubt."""
 
+MIN_WIDTH_M = 2.0
+"""Of water in which a drone can tell that it is over it: satellites place it to a metre or two."""
+
+MAX_NARROW_M = 10.0
+"""An outline whose area is larger than its diagonal times this has room enough, and is not measured."""
+
 MIN_FENCED_SHARE = 0.9
 """Of the ponds must lie in an area for it to be taken as a fence by its name alone."""
 
@@ -159,6 +165,7 @@ def _tell_misnamed(feature: Feature, role: str, inside: float, source: Source) -
 def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     """What makes the place of a pond a guess: corners placed or joined while reading, and ponds that lie in ponds."""
     doubts = [Doubt(draft.id, f"{draft.feature.place}: {told}") for draft in drafts for told in draft.feature.doubts]
+    doubts.extend(_narrow(drafts, source))
     offsets = [
         (-shapes.clearance_m(draft.sampling_point, draft.outline), draft.feature.place)
         for draft in drafts
@@ -181,6 +188,21 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
             kind="ponds in ponds",
         )
         doubts.append(Doubt(drafts[inner].id, f"{drafts[inner].feature.place}: {told}"))
+    return doubts
+
+
+def _narrow(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
+    """Ponds with less room around their sampling point than a drone that knows where it is only so well needs."""
+    doubts = []
+    for draft in drafts:
+        if not draft.outline or draft.area_m2 > MAX_NARROW_M * shapes.extent_m(draft.outline):
+            continue
+        # The file may have put the sampling point anywhere; how wide the water is asked of the best place.
+        width_m = 2.0 * shapes.clearance_m(shapes.point_inside(draft.outline), draft.outline)
+        if width_m < MIN_WIDTH_M:
+            told = f"pond {draft.id} is {width_m:.2g} m wide where it is widest, which is no room for a drone"
+            source.notes.add(f"{draft.feature.place}: {told}; is it a sliver?", kind="narrow ponds")
+            doubts.append(Doubt(draft.id, f"{draft.feature.place}: {told}"))
     return doubts
 
 
