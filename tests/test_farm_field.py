@@ -461,6 +461,24 @@ def test_the_column_that_tells_ponds_apart_names_them(tmp_path: Path) -> None:
     assert named(*({"id": 0} for n in range(3))) == ["1", "2", "3"]
 
 
+@pytest.mark.parametrize("heading", ["имя", "שם", "bezeichnung_x", "station", "xx", "Βάθρο", "nazwa"])
+def test_a_column_of_any_heading_names_the_ponds_where_none_is_known(tmp_path: Path, heading: str) -> None:
+    rows = [("Alpha", "10.1,105.7"), ("Beta 2", "10.101,105.702"), ("NFZ", "10.102,105.702")]
+    text = f"{heading},lat,lon,depth\n" + "".join(f"{name},{place},1.{len(name)}\n" for name, place in rows[:2])
+    farm = read_farm(table(tmp_path, text), depot=DEPOT)
+    assert ids(farm) == ["Alpha", "Beta 2"]
+    if heading not in {"имя", "שם", "nazwa"}:
+        assert f"No column is known to hold names; the features are named by column {heading!r}." in farm.notes
+    features = [polygon(index, 0, depth=2, **{heading: name}) for index, (name, _) in enumerate(rows)]
+    farm = read_farm(geojson(tmp_path, *features, shape("Point", [*DEPOT], role="depot")))
+    assert (ids(farm), len(farm.no_fly)) == (["Alpha", "Beta 2"], 1)
+
+
+def test_kinds_and_tags_are_no_names(tmp_path: Path) -> None:
+    features = [polygon(0, 0, type="pond"), polygon(1, 0, type="shrimp pond")]
+    assert ids(read_farm(geojson(tmp_path, *features), depot=DEPOT)) == ["1", "2"]
+
+
 def test_equal_numbers_in_two_folders_get_the_folder(tmp_path: Path) -> None:
     folders = "".join(
         f"<Folder><name>{folder}</name>{placemark('1', kml_polygon(column, 0))}"

@@ -16,7 +16,7 @@ from pondhop.farm.faults import told_faults
 from pondhop.farm.features import Feature, Source, clean_text, listed
 from pondhop.farm.formats import read_source
 from pondhop.farm.model import Doubt, Farm, Pond
-from pondhop.farm.names import name_ponds
+from pondhop.farm.names import adopt_names, name_ponds
 from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
@@ -130,6 +130,7 @@ def _sorted(source: Source) -> Sorted:
     if not source.features and not source.faults:
         action = "export the layer that holds the ponds"
         source.faults.append(Fault("file", "there is no feature in this file", action))
+    adopt_names(source.features, source)
     wrap_longitudes(source.features, source.notes)
     misplaced = check_coordinates(source.features)
     source.faults.extend(misplaced)
