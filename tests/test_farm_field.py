@@ -17,6 +17,8 @@ import shapely
 
 from pondhop import InvalidInput
 from pondhop.farm import Farm, doubt_fault, read_farm
+from pondhop.farm.archives import Room
+from pondhop.farm.formats import read_source
 from pondhop.farm.shapes import clearance_m
 
 FIELD = Path(__file__).parent / "data" / "field"
@@ -291,6 +293,67 @@ def test_words_count_only_whole(tmp_path: Path, name: str) -> None:
     assert ids(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)) == [*PONDS[:3], name]
 
 
+@pytest.mark.parametrize("name", ["Old Mill", "Zwinger 3", "Maneki", "Fazendinha", "Kennel", "ตึก", "别墅", "منتجع"])
+def test_what_is_not_called_like_all_other_ponds_is_in_doubt(tmp_path: Path, name: str) -> None:
+    for others in (
+        [f"Pond {number}" for number in range(1, 7)],
+        [f"{number}" for number in range(1, 7)],
+        [f"塘{number}号" for number in range(1, 5)],
+        ["North pond", "Lily pond", "Big Lake", "Étang vert", "Ao số 5"],
+    ):
+        features = [polygon(index, 0, name=other) for index, other in enumerate(others)]
+        path = geojson(tmp_path, *features, polygon(5, 5, name=name))
+        [doubt] = read_farm(path, depot=DEPOT).doubts
+        assert doubt.pond_id == name
+        assert f"is {name!r} a pond? The others are called {others[0]!r}" in doubt.message
+        assert "role" in doubt_fault([doubt]).action
+        assert read_farm(path, depot=DEPOT, accept=[name]).doubts == ()
+    sure = polygon(5, 5, name=name, role="pond")
+    assert read_farm(geojson(tmp_path, *ponds(6), sure), depot=DEPOT).doubts == ()
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["Alpha", "Beta", "Gamma", "Delta", "Epsilon", "Zeta", "Eta"],
+        ["Pond 1", "Pond 2", "Pond 3", "Pond 4", "Pond 5", "Big Tom", "Lucy", "Old Joe"],
+        [*PONDS, "Nursery 1", "Norte 4", "A7", "3b", "Tilapia 2", "Untitled Polygon"],
+        [*(f"Bloc {n}" for n in range(1, 9)), *(f"Crique {n}" for n in range(1, 4))],
+        ["North", "South", "Big pond", "Old pond", "Lily pond", "Frog pond", "Long pond"],
+        [f"Casita {n}" for n in range(1, 7)],
+        ["12-A", "12-B", "13-A", "13-B", "14-A", "R1"],
+    ],
+)
+def test_farms_with_names_of_their_own_are_in_no_doubt(tmp_path: Path, names: list[str]) -> None:
+    features = [polygon(index, 0, name=name) for index, name in enumerate(names)]
+    farm = read_farm(geojson(tmp_path, *features), depot=DEPOT)
+    assert (len(farm.ponds), farm.doubts) == (len(names), ())
+
+
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        ("N.F.Z.", 1),
+        ("Runway", 1),
+        ("Airstrip 2", 1),
+        ("跑道", 1),
+        ("Farmhouse", 0),
+        ("学校", 0),
+        ("Masjid", 0),
+        ("ruộng lúa", 0),
+    ],
+)
+def test_words_for_what_lies_beside_ponds(tmp_path: Path, name: str, count: int) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)
+    assert (ids(farm), len(farm.no_fly)) == (PONDS[:3], count)
+
+
+@pytest.mark.parametrize("name", ["Geozaun", "Clôture", "Cerca", "Hàng rào", "รั้ว", "围栏", "柵", "울타리", "Geofence"])
+def test_words_for_fences(tmp_path: Path, name: str) -> None:
+    around = [[[105.69, 10.09], [105.72, 10.09], [105.72, 10.12], [105.69, 10.12], [105.69, 10.09]]]
+    assert len(read_farm(geojson(tmp_path, *ponds(6), shape("Polygon", around, name=name)), depot=DEPOT).fences) == 1
+
+
 def test_a_role_wins_over_every_name(tmp_path: Path) -> None:
     things = [polygon(5, 5, name="No fly zone", role="pond"), polygon(6, 5, name="Pond 9", role="other")]
     assert ids(read_farm(geojson(tmp_path, *ponds(), *things), depot=DEPOT)) == [*PONDS[:3], "No fly zone"]
@@ -399,6 +462,24 @@ def test_the_column_that_tells_ponds_apart_names_them(tmp_path: Path) -> None:
     assert named(*({"id": 0} for n in range(3))) == ["1", "2", "3"]
 
 
+@pytest.mark.parametrize("heading", ["имя", "שם", "bezeichnung_x", "station", "xx", "Βάθρο", "nazwa"])
+def test_a_column_of_any_heading_names_the_ponds_where_none_is_known(tmp_path: Path, heading: str) -> None:
+    rows = [("Alpha", "10.1,105.7"), ("Beta 2", "10.101,105.702"), ("NFZ", "10.102,105.702")]
+    text = f"{heading},lat,lon,depth\n" + "".join(f"{name},{place},1.{len(name)}\n" for name, place in rows[:2])
+    farm = read_farm(table(tmp_path, text), depot=DEPOT)
+    assert ids(farm) == ["Alpha", "Beta 2"]
+    if heading not in {"имя", "שם", "nazwa"}:
+        assert f"No column is known to hold names; the features are named by column {heading!r}." in farm.notes
+    features = [polygon(index, 0, depth=2, **{heading: name}) for index, (name, _) in enumerate(rows)]
+    farm = read_farm(geojson(tmp_path, *features, shape("Point", [*DEPOT], role="depot")))
+    assert (ids(farm), len(farm.no_fly)) == (["Alpha", "Beta 2"], 1)
+
+
+def test_kinds_and_tags_are_no_names(tmp_path: Path) -> None:
+    features = [polygon(0, 0, type="pond"), polygon(1, 0, type="shrimp pond")]
+    assert ids(read_farm(geojson(tmp_path, *features), depot=DEPOT)) == ["1", "2"]
+
+
 def test_equal_numbers_in_two_folders_get_the_folder(tmp_path: Path) -> None:
     folders = "".join(
         f"<Folder><name>{folder}</name>{placemark('1', kml_polygon(column, 0))}"
@@ -472,6 +553,95 @@ def test_a_table_is_read_however_it_is_written(tmp_path: Path, text: str) -> Non
 def test_south_and_west_are_negative(tmp_path: Path, text: str) -> None:
     [pond] = read_farm(table(tmp_path, text), depot=(-79.9, -2.301)).ponds
     assert pond.sampling_point == pytest.approx((-79.9009, -2.3004), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "sign"),
+    [
+        ("Name;Breite;Länge\nTeich 1;53,1 N;9,5 O\n", 1),
+        ("Name;Breitengrad;Längengrad\nA;53°06'00\"N;9°30'00\"O\n", 1),
+        ("Naam;Breedte;Lengte\nA;53,1 N;9,5 O\n", 1),
+        ("Naam;Breedtegraad;Lengtegraad\nA;53,1 Noord;9,5 Oost\n", 1),
+        ("Name;Breite;Länge;EW\nA;53,1;9,5;O\n", 1),
+        ("Name;Breite;Länge (O)\nA;53,1;9,5\n", 1),
+        ("Teich;Koordinaten\nA;53.1 N, 9.5 O\n", 1),
+        ("name;lat;lon\nA;53,1 N;9,5 O\nB;53,1 N;0,001 W\n", 1),
+        ("name;lat;lon\nTeich 1;53,1 N;9,5 O\n", 1),
+        ("nombre,latitud,longitud\nA,53.1 N,9.5 O\n", -1),
+        ("nombre,Latitud (N),Longitud (O)\nA,53.1,9.5\n", -1),
+        ("nom,latitude,longitude\nA,53.1 N,9.5 O\n", -1),
+        ("nome,latitudine,longitudine\nA,53.1 N,9.5 O\n", -1),
+        ("viveiro,latitude,longitude,ew\nA,53.1,9.5,O\n", -1),
+        ("name,lat,lon\nÉtang 1,53.1 N,9.5 O\n", -1),
+        ("name,lat,lon\nA,53.1 N,9.5 Ouest\n", -1),
+        ("name,lat,lon\nA,53.1 N,9.5 O\nB,53.1 N,0.001 E\n", -1),
+    ],
+)
+def test_the_letter_o_is_east_or_west_by_language(tmp_path: Path, text: str, sign: int) -> None:
+    layers = read_source(table(tmp_path, text))
+    assert layers.faults == []
+    assert layers.features[0].geometry.points == [pytest.approx((sign * 9.5, 53.1))]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "name,lat,lon\nA,3.4 S,60.9 O\nB,3.401 S,60.9 O\n",
+        "name,lat,lon,ew\nA,3.4,60.9,O\n",
+        "name,lat,Lon (O)\nA,3.4,60.9\n",
+        "name,latitude,longitude\nTeich,3.4 S,60.9 O\nEstanque,3.401 S,60.9 O\n",
+    ],
+)
+def test_the_letter_o_without_a_language_is_a_fault_that_asks(tmp_path: Path, text: str) -> None:
+    [(_, message, action)] = faults_of(table(tmp_path, text), depot=(-60.9, -3.4))
+    assert "O is east in German and Dutch, and west in Spanish" in message
+    assert action == "write E or W"
+
+
+UTM = "name,easting,northing,zone"
+
+
+def test_zone_s_of_utm_is_a_fault_that_asks_where_it_may_be_a_band(tmp_path: Path) -> None:
+    for zone, northing in (("15S", 3698000), ("15 s", 4400000), ("UTM 15S", 2500000)):
+        text = f"{UTM}\nA,322000,{northing},{zone}\nB,322200,{northing},{zone}\n"
+        [(place, message, action)] = faults_of(table(tmp_path, text))
+        assert place == "line 2, column zone"
+        assert message.endswith("is 15 north or south? S is a band of latitudes in the north, and the southern half")
+        assert action == "write 15 north or 15 south"
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "expected"),
+    [
+        (f"{UTM}\nA,322000,3698000,15 north\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM},hemisphere\nA,322000,3698000,15S,N\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM},hemisphere\nA,322000,3698000,15,N\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM},hem\nA,620000,9620000,17,Sur\n", {"depot": (-79.92, -3.43)}, (-79.92, -3.43)),
+        (f"{UTM}\nA,322000,3698000,EPSG:32615\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM}\nA,322000,3698000,15S\n", {"depot": (-94.91, 33.4)}, (-94.9, 33.4)),
+        (f"{UTM}\nA,322000,3530000,15R\nB,322200,3541000,15S\n", {"depot": (-94.9, 31.9)}, (-94.88, 31.89)),
+        (f"{UTM}\nA,620000,9620000,17S\n", {"depot": (-79.92, -3.43)}, (-79.92, -3.43)),
+        (f"{UTM}\nA,620000,9620000,17M\n", {"depot": (-79.92, -3.43)}, (-79.92, -3.43)),
+    ],
+)
+def test_the_half_of_a_zone_of_utm_is_known(
+    tmp_path: Path, text: str, options: dict[str, tuple[float, float]], expected: tuple[float, float]
+) -> None:
+    assert read_farm(table(tmp_path, text), **options).ponds[0].sampling_point == pytest.approx(expected, abs=0.02)  # type: ignore[arg-type]
+
+
+def test_another_file_tells_the_half_of_a_zone(tmp_path: Path) -> None:
+    place = geojson(tmp_path, shape("Point", [-94.91, 33.4], role="depot")).read_text()
+    files = {"ponds.csv": f"{UTM}\nA,322000,3698000,15S\n", "depot.geojson": place}
+    [pond] = read_farm(packed(tmp_path, files)).ponds
+    assert pond.sampling_point == pytest.approx((-94.9, 33.4), abs=0.02)
+
+
+def test_a_zone_without_its_half_is_one_fault_a_line(tmp_path: Path) -> None:
+    text = f"{UTM}\nA,620000,9620000,17\nB,620200,9620100,17\n"
+    faults = faults_of(table(tmp_path, text), depot=(-79.92, -3.43))
+    assert [message for _, message, _ in faults] == ["'A': '17' is no zone of UTM", "'B': '17' is no zone of UTM"]
+    assert "column hemisphere" in faults[0][2]
 
 
 def test_contradictions_of_sign_and_letter_are_faults(tmp_path: Path) -> None:
@@ -578,6 +748,55 @@ def test_files_of_an_archive_are_layers(tmp_path: Path) -> None:
         archive.writestr("Farm/no_fly.geojson", geojson(tmp_path, polygon(4, 4, name="School")).read_text())
     assert "School" in str(read_farm(path, depot=DEPOT).notes)
     assert ids(read_farm(path, depot=DEPOT, layers=["ponds"])) == PONDS[:3]
+
+
+def packed(folder: Path, members: Mapping[str, str | bytes], name: str = "farm.zip") -> Path:
+    path = folder / name
+    with zipfile.ZipFile(path, "w") as archive:
+        for member, content in members.items():
+            archive.writestr(member, content)
+    return path
+
+
+def test_everything_in_an_archive_is_read_or_told(tmp_path: Path) -> None:
+    farm = geojson(tmp_path, *ponds()).read_text()
+    corners = ", ".join(f"{lon} {lat}" for lon, lat in square(5, 5))
+    table_of_area = f'wkt,name\n"POLYGON (({corners}))",No fly\n'
+    map_of_area = kml(tmp_path, placemark("No fly", kml_polygon(5, 5))).read_text()
+    kmz = packed(tmp_path, {"doc.kml": map_of_area}, "nofly.kmz").read_bytes()
+    inner = packed(tmp_path, {"deep/nofly.kmz": kmz}, "inner.zip").read_bytes()
+    for name, content in (
+        *(("nofly.csv", table_of_area), ("nofly.kmz", kmz), ("inner.zip", inner), ("nofly.txt", table_of_area)),
+        ("nofly", map_of_area),
+    ):
+        read = read_farm(packed(tmp_path, {"ponds.geojson": farm, name: content}), depot=DEPOT)
+        assert (ids(read), len(read.no_fly)) == (PONDS[:3], 1), name
+    tables = {"ponds.geojson": farm, "depot.csv": "lat,lon\n10.0995,105.6985\n"}
+    assert read_farm(packed(tmp_path, tables)).depot == DEPOT
+    others: dict[str, str | bytes] = {"nofly.rar": b"Rar!", "readme.txt": "Hello", "samples.csv": "pond,oxygen\n1,4\n"}
+    others |= {"lone.dbf": b"x", "photos.zip": packed(tmp_path, {"a.jpg": b"x"}, "p.zip").read_bytes(), "map.pdf": b"%"}
+    [note] = read_farm(packed(tmp_path, {"ponds.geojson": farm, **others}), depot=DEPOT).notes
+    assert all(repr(name) in note for name in others), note
+    icon = (
+        placemark("A", kml_polygon(0, 0))
+        + "<Style><IconStyle><Icon><href>files/i.png</href></Icon></IconStyle></Style>"
+    )
+    with_icon: dict[str, str | bytes] = {
+        "doc.kml": kml(tmp_path, icon).read_text(),
+        "files/i.png": b"x",
+        "__MACOSX/._doc.kml": b"x",
+    }
+    assert read_farm(packed(tmp_path, with_icon), depot=DEPOT).notes == ()
+    broken = packed(tmp_path, {"ponds.geojson": farm, "nofly.kmz": b"PK\x03\x04"})
+    assert faults_of(broken, depot=DEPOT)[0][0] == "nofly.kmz"
+
+
+def test_archives_in_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Room.__init__, "__defaults__", (50_000, 0))
+    inner = packed(tmp_path, {"a.csv": "x" * 20_000}, "a.zip").read_bytes()
+    members: dict[str, str | bytes] = {"1.zip": inner, "2.zip": inner}
+    members["farm.geojson"] = geojson(tmp_path, *ponds()).read_text()
+    assert any("would unpack to" in message for _, message, _ in faults_of(packed(tmp_path, members), depot=DEPOT))
 
 
 def test_pipes_devices_and_links_to_other_files_are_not_opened(tmp_path: Path) -> None:
@@ -694,6 +913,22 @@ def test_a_place_that_may_be_the_depot_is_offered_and_never_sampled(tmp_path: Pa
     [(_, _, action)] = faults_of(path)
     assert f"{name!r} lies at 105.698500,10.099500" in action
     assert ids(read_farm(path, depot=DEPOT)) == PONDS[:3]
+
+
+@pytest.mark.parametrize("width_deg", [1e-7, 1e-6, 1e-5, 1.7e-5])
+def test_a_pond_without_room_for_a_drone_is_in_doubt(tmp_path: Path, width_deg: float) -> None:
+    south, north = 10.103, 10.103 + width_deg
+    ring = [[105.7, south], [105.701, south], [105.701, north], [105.7, north], [105.7, south]]
+    sampled = [
+        shape("Polygon", [ring], name="Pond 9"),
+        shape("Polygon", [ring], name="P", sampling_point=[105.7, south]),
+    ]
+    for thin in sampled:
+        farm = read_farm(geojson(tmp_path, *ponds(), thin), depot=DEPOT)
+        assert [doubt.pond_id for doubt in farm.doubts] == [thin["properties"]["name"]]  # type: ignore[index]
+        assert "m wide where it is widest" in farm.doubts[0].message
+    wide = [[lon, lat if lat == south else south + 3e-5] for lon, lat in ring]
+    assert read_farm(geojson(tmp_path, *ponds(), shape("Polygon", [wide], name="Pond 9")), depot=DEPOT).doubts == ()
 
 
 CORNERS = "pond_id,lat_ul,lon_ul,lat_ur,lon_ur,lat_ll,lon_ll,lat_lr,lon_lr\n"

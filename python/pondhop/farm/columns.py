@@ -29,7 +29,10 @@ _AFTER = (
     r"(?:coordenada|coordinate|coord|coor)?(?:deg|degrees|degree|dd|wgs84|decimal|decimals|epsg4326|grados|graus|gps|dms|gms|"
     r"decimaldegrees|gradosdecimales|grausdecimais)?"
 )
-_SIDE = r"(?P<side>north|south|east|west|norte|sur|sul|este|leste|oeste|[nsew])?"
+_SIDE = (
+    r"(?P<side>north|south|east|west|norte|sur|sul|este|leste|oeste|"
+    r"nord|süd|sud|ost|oost|noord|zuid|ouest|ovest|[nsewo])?"
+)
 _CORNERS = {
     **dict.fromkeys(("ul", "tl", "nw", "upperleft", "topleft", "northwest"), 0),
     **dict.fromkeys(("ll", "bl", "sw", "lowerleft", "bottomleft", "southwest"), 1),
@@ -44,6 +47,7 @@ _NORTHING = _any_of(*column_words("northing"))
 _ZONE = _any_of(*column_words("zone"))
 _PAIR = _any_of(*column_words("pair"))
 _LAT_SIDE = _any_of(*column_words("side_of_latitude"))
+_SIDE_NAMES = frozenset(map(normal_name, ("hemisphere", "hemisferio", "hemisfério", "hémisphère", "hem", "半球")))
 _LON_SIDE = _any_of(*column_words("side_of_longitude"))
 
 
@@ -64,11 +68,15 @@ class Columns:
     sides
         Column with the letter of the hemisphere for each axis.
     signs
-        What a heading such as ``Lat (S)`` says about positive numbers.
+        What a heading such as ``Lat (S)`` says about positive numbers; 0 for the letter O.
     zone
         The column with the zone of UTM; then `corners` are easting and northing.
+    zone_side
+        The column that says whether the zone is the northern or the southern half.
     pair
         A column that holds latitude and longitude, as map programs copy them.
+    sign_of_o
+        What the letter O says about a longitude.
     """
 
     names: tuple[str, ...]
@@ -78,12 +86,14 @@ class Columns:
     sides: dict[Axis, int] = field(default_factory=dict)
     signs: dict[Axis, int] = field(default_factory=dict)
     zone: int | None = None
+    zone_side: int | None = None
     pair: int | None = None
+    sign_of_o: int = -1
 
     def used(self) -> set[int]:
         """Indices of the columns that tell where a pond is."""
         found = {index for pair in self.corners for index in pair} | set(self.sides.values())
-        return found | {index for index in (self.wkt, self.zone, self.pair) if index is not None}
+        return found | {index for index in (self.wkt, self.zone, self.zone_side, self.pair) if index is not None}
 
 
 def _axis(name: str) -> tuple[Axis, str, int] | None:
@@ -141,7 +151,7 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
             source.faults.append(Fault(place, message, "keep one of them"))
             return None
         found[axis, corner] = index
-        if sign < 0:
+        if sign <= 0:
             signs[axis] = sign
     pair = _pair_column(plain, rows) if not found and wkt is None else None
     if pair is not None:
@@ -154,7 +164,7 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
         is_metres = any(_is_beyond_degrees(row, found["lon", ""]) for row in rows)
         eastings, northings = ([found["lon", ""]], [found["lat", ""]]) if is_metres else ([], [])
     if zone is not None and len(eastings) == len(northings) == 1:
-        return Columns(names, ((eastings[0], northings[0]),), zone=zone)
+        return Columns(names, ((eastings[0], northings[0]),), zone=zone, zone_side=_zone_side(plain, rows, zone))
     if wkt is None and not found:
         shown = ", ".join(names)[:80]
         seen = "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {shown}"
@@ -167,6 +177,16 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
     if not found or (wkt is not None and ("lon", "") not in found):
         return Columns(names, (), wkt)
     return _with_corners(names, found, _sides(plain, rows, found), signs, place, source)
+
+
+def _zone_side(plain: Sequence[str], rows: Sequence[Sequence[str]], zone: int) -> int | None:
+    """The column that holds north or south for a zone of UTM: called so, or right beside it."""
+    for index, name in enumerate(plain):
+        cells = [row[index].strip() for row in rows if index < len(row) and row[index].strip()]
+        is_named = name in _SIDE_NAMES or re.fullmatch(_LAT_SIDE, name) or index == zone + 1
+        if is_named and cells and all((hemisphere(cell) or ("", 0))[0] == "lat" for cell in cells):
+            return index
+    return None
 
 
 def _pair_column(plain: Sequence[str], rows: Sequence[Sequence[str]]) -> int | None:
@@ -207,11 +227,7 @@ def _sides(plain: Sequence[str], rows: Sequence[Sequence[str]], found: dict[tupl
             if not cells or any(side is None or side[0] != axis for side in told):
                 continue
             is_beside = index == coordinate + 1 and max(map(len, cells)) <= 2
-            if (
-                re.fullmatch(words, name)
-                or is_beside
-                or name in {"hemisphere", "hemisferio", "hemisfério", "hem", "半球"}
-            ):
+            if re.fullmatch(words, name) or is_beside or name in _SIDE_NAMES:
                 sides[axis] = index
                 break
     return sides

@@ -24,9 +24,10 @@ _SIDES: dict[str, tuple[Axis, int]] = {
     "south": ("lat", -1),
     "east": ("lon", 1),
     "west": ("lon", -1),
+    "either": ("lon", 0),
 }
 _HEMISPHERES = {word: _SIDES[side] for side, words in hemisphere_words().items() for word in words}
-"""Letters and words of each side; O is west in Spanish and Portuguese (in German east, where tables now write E)."""
+"""Letters and words of each side, with the sign; that of O is 0: it is west in Spanish and French, east in German."""
 
 _LETTERS = "|".join(sorted(map(re.escape, _HEMISPHERES), key=len, reverse=True))
 _SIGNED = re.compile(
@@ -64,14 +65,20 @@ def metres(text: str) -> float | None:
 
 
 def hemisphere(text: str) -> tuple[Axis, int] | None:
-    """The axis and the sign that a letter or word stands for."""
+    """The axis and the sign that a letter or word stands for; the sign of O is 0, because languages differ."""
     return _HEMISPHERES.get(text.strip().strip(".").lower())
 
 
-def parse_degrees(text: str, axis: Axis) -> float | None:
+def side_written(text: str) -> tuple[Axis, int] | None:
+    """The hemisphere of a cell that is its letter, or an angle with its letter."""
+    match = _SIGNED.fullmatch(text.strip().translate(_SIGNS))
+    return hemisphere((match["before"] or match["after"] or "") if match else text)
+
+
+def parse_degrees(text: str, axis: Axis, sign_of_o: int = -1) -> float | None:
     """Degrees as people write them: ``-89.17``, ``89,17 W``, ``10°06'01.4"N``, ``N 10 06 01.4``, ``10d06m``.
 
-    Returns ``None`` for what is no angle of this axis.
+    Returns ``None`` for what is no angle of this axis. The letter O has the sign that the language of a table gives it.
     """
     number = plain_number(text)
     if number is not None:
@@ -92,6 +99,7 @@ def parse_degrees(text: str, axis: Axis) -> float | None:
     letter = match["before"] or match["after"]
     if letter:
         letter_axis, sign = _HEMISPHERES[letter.lower()]
+        sign = sign or sign_of_o
         if letter_axis != axis or (match["sign"] == "-" and sign > 0):
             return None
         return sign * value

@@ -126,6 +126,25 @@ class Notes:
 
 
 @dataclass
+class OpenZone:
+    """Features in metres of a zone of UTM that may lie in the north or in the south.
+
+    Attributes
+    ----------
+    number
+        Of the zone.
+    place
+        Where the first of them names it.
+    features
+        With their metres in place of degrees, until other places tell.
+    """
+
+    number: int
+    place: str
+    features: list[Feature]
+
+
+@dataclass
 class Source:
     """A farm file, read but not yet judged.
 
@@ -141,6 +160,8 @@ class Source:
         What the reader assumed or changed, a sentence each.
     layers
         The names of all layers, sheets or folders, also of those that were not asked for.
+    open_zones
+        What is settled when everything else is read.
     """
 
     name: str
@@ -148,6 +169,7 @@ class Source:
     faults: list[Fault] = field(default_factory=list)
     notes: Notes = field(default_factory=Notes)
     layers: list[str] = field(default_factory=list)
+    open_zones: list[OpenZone] = field(default_factory=list)
 
 
 @lru_cache(maxsize=4096)

@@ -12,9 +12,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from pondhop.errors import Fault
-from pondhop.farm.archives import check_archive, is_spreadsheet, unpack
+from pondhop.farm.archives import Room, Unpacked, check_archive, is_spreadsheet, unpack
 from pondhop.farm.encodings import decode
-from pondhop.farm.features import Source
+from pondhop.farm.features import Source, listed
 from pondhop.farm.geojson import read_json
 from pondhop.farm.gis import FORMATS, is_gis_file, layer_fault, read_gis, read_sheets
 from pondhop.farm.gpx import read_gpx
@@ -50,7 +50,7 @@ def read_source(path: Path, layers: Sequence[str] = ()) -> Source:
         if fault is not None:
             source.faults.append(fault)
         else:
-            _read_file(path, source, layers)
+            _read_file(path, source, layers, Room())
     except OSError as error:
         source.faults.append(Fault(str(path), f"cannot be read: {error.strerror}", "check the file's permissions"))
     if layers:
@@ -77,7 +77,7 @@ def _file_fault(path: Path) -> Fault | None:
     return None
 
 
-def _read_file(path: Path, source: Source, layers: Sequence[str]) -> None:
+def _read_file(path: Path, source: Source, layers: Sequence[str], room: Room) -> None:
     if path.is_dir():
         read_gis(path, source, layers)
         return
@@ -86,9 +86,9 @@ def _read_file(path: Path, source: Source, layers: Sequence[str]) -> None:
     suffix = path.suffix.lower()
     if head.startswith(b"PK\x03\x04"):
         if is_spreadsheet(path):
-            _read_workbook(path, source)
+            _read_workbook(path, source, room)
         else:
-            _read_archive(path, source, layers)
+            _read_archive(path, source, layers, room)
     elif is_gis_file(path, head):
         read_gis(path, source, layers)
     elif suffix in {".geojson", ".json"}:
@@ -140,39 +140,86 @@ def _read_xml(path: Path, head: bytes, source: Source) -> None:
         source.faults.append(Fault(str(path), message, f"export the farm as {FORMATS}"))
 
 
-def _read_workbook(path: Path, source: Source) -> None:
-    fault = check_archive(path)
+def _read_workbook(path: Path, source: Source, room: Room) -> None:
+    fault = check_archive(path, room=room)
     if fault is not None:
         source.faults.append(fault)
         return
     read_sheet_rows(read_sheets(path.resolve(), source), source)
 
 
-def _read_archive(path: Path, source: Source, layers: Sequence[str]) -> None:
-    """Read what an archive holds; several files in it are layers of one farm, named as they are."""
+def _read_archive(path: Path, source: Source, layers: Sequence[str], room: Room) -> None:
+    """Read what an archive holds; several files in it are layers of one farm, named as they are.
+
+    What is not read is told by name: it may be the area to keep out of.
+    """
     with TemporaryDirectory(prefix="pondhop-") as folder:
-        entries = unpack(path, Path(folder), source)
+        entries, others = unpack(path, Path(folder), source, room)
+        if source.faults:
+            return
+        inner_room = Room(room.bytes_left, room.depth + 1)
+        read: list[tuple[Unpacked, Source]] = []
+        blank: list[tuple[Unpacked, Source]] = []
         for entry in entries:
             inner = Source(name=source.name)
-            _read_file(entry.path, inner, layers)
-            stem = Path(entry.member).stem
-            if len(entries) > 1:
-                for feature in inner.features:
-                    feature.place = f"{entry.member}, {feature.place}"
-                    feature.property_place = f"{entry.member}, {feature.property_place}"
-                    feature.folders = feature.folders if stem in feature.folders else (stem, *feature.folders)
-                source.layers.append(stem)
-            elif inner.name != entry.path.stem:
-                source.name = inner.name
-            source.features.extend(inner.features)
-            source.layers.extend(inner.layers)
-            for fault in inner.faults:
-                place = fault.path.replace(str(entry.path.resolve()), entry.member).replace(
-                    str(entry.path), entry.member
-                )
-                source.faults.append(Fault(place, fault.message, fault.action))
-            for sentence in inner.notes.sentences():
-                source.notes.add(sentence)
+            try:
+                _read_file(entry.path, inner, layers, inner_room)
+            except OSError as error:
+                inner.faults.append(Fault(entry.member, f"cannot be read: {error.strerror}", "export it again"))
+            (blank if _is_blank(entry, inner) else read).append((entry, inner))
+        room.bytes_left = inner_room.bytes_left
+    if not read:
+        read = [(entry, inner) for entry, inner in blank if entry.is_map]
+        blank = [(entry, inner) for entry, inner in blank if not entry.is_map]
+    others = [*(entry.member for entry, _ in blank), *others]
+    if not read:
+        held = listed(map(repr, others)) or "nothing"
+        action = "name the file with the ponds; an archive may hold KML, shapefiles, GeoJSON and tables"
+        source.faults.append(Fault(str(path), f"the archive holds no map: {held}", action))
+        return
+    if others:
+        what = "these files of the archive hold" if len(others) > 1 else "this file of the archive holds"
+        source.notes.add(
+            f"Not read, because {what} no places in a form that is known: {listed(map(repr, others), 50)}."
+        )
+    for entry, inner in read:
+        _add_layer(entry, inner, source, has_siblings=len(read) > 1)
+
+
+def _is_blank(entry: Unpacked, inner: Source) -> bool:
+    """Whether a file of an archive turned out to hold no places: a remark, a table of water samples, pictures."""
+    if inner.features:
+        return False
+    if not entry.is_map:
+        return True
+    return bool(inner.faults) and all(
+        fault.message.startswith(("no longitude and latitude columns", "the archive holds no map"))
+        and "add a column zone" not in fault.action
+        for fault in inner.faults
+    )
+
+
+def _add_layer(entry: Unpacked, inner: Source, source: Source, *, has_siblings: bool) -> None:
+    """Add what a file of an archive holds."""
+    stem = Path(entry.member).stem
+    if has_siblings:
+        for zone in inner.open_zones:
+            zone.place = f"{entry.member}, {zone.place}"
+        for feature in inner.features:
+            feature.place = f"{entry.member}, {feature.place}"
+            feature.property_place = f"{entry.member}, {feature.property_place}"
+            feature.folders = feature.folders if stem in feature.folders else (stem, *feature.folders)
+        source.layers.append(stem)
+    elif inner.name != entry.path.stem:
+        source.name = inner.name
+    source.features.extend(inner.features)
+    source.open_zones.extend(inner.open_zones)
+    source.layers.extend(inner.layers)
+    for fault in inner.faults:
+        place = fault.path.replace(str(entry.path.resolve()), entry.member).replace(str(entry.path), entry.member)
+        source.faults.append(Fault(place, fault.message, fault.action))
+    for sentence in inner.notes.sentences():
+        source.notes.add(sentence)
 
 
 def _keep_layers(layers: Sequence[str], source: Source) -> None:

@@ -18,7 +18,7 @@ from pondhop.farm.features import (
     text_of,
 )
 from pondhop.farm.ponds import Draft
-from pondhop.farm.roles import POND_COLUMNS, ROLE_COLUMNS
+from pondhop.farm.roles import KIND_COLUMNS, OSM_KEYS, POND_COLUMNS, ROLE_COLUMNS
 from pondhop.farm.words import is_plain_word, is_unnamed
 from pondhop.places import distance_m
 
@@ -33,6 +33,26 @@ MAX_ID_LETTERS = 40
 
 COPY_M = 2.0
 """Ponds nearer than this with one id in two layers are one pond drawn twice."""
+
+
+def adopt_names(features: Sequence[Feature], source: Source) -> None:
+    """Take the first column of texts that tells the features apart as their names, where no column is known to be one.
+
+    Before anything is told by its name: an area to keep out of may have its name in a column of any heading.
+    """
+    candidates = [feature for feature in features if feature.find(*ROLE_COLUMNS) is None]
+    known = (*NAME_COLUMNS, *POND_COLUMNS)
+    if len(candidates) < 2 or any(feature.find(*known) for feature in features):
+        return
+    column = next(_other_columns(candidates, list(map(normal_name, (*KIND_COLUMNS, *OSM_KEYS)))), None)
+    if column is None:
+        return
+    for feature in features:
+        found = feature.find(column)
+        if found is not None:
+            key, value = found
+            feature.properties = {"name": text_of(value), **feature.properties}
+    source.notes.add(f"No column is known to hold names; the features are named by column {key!r}.")
 
 
 def name_ponds(drafts: Sequence[Draft], source: Source) -> None:
@@ -135,7 +155,8 @@ def _number_unnamed(drafts: Sequence[Draft], source: Source) -> None:
             _number(features, id_of, name, used, f"{name} ")
             numbered.append(name)
     if num_unnamed:
-        source.notes.add(f"{num_unnamed} ponds without an id were numbered in the order of the file.")
+        ponds = "1 pond without an id was" if num_unnamed == 1 else f"{num_unnamed} ponds without an id were"
+        source.notes.add(f"{ponds} numbered in the order of the file.")
     if numbered:
         example = f"{shortened(numbered[0])} 2"
         source.notes.add(f"Ponds called alike were numbered in the order of the file, as in {example!r}.")

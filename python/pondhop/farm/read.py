@@ -18,13 +18,21 @@ from pondhop.farm.faults import told_faults
 from pondhop.farm.features import Feature, Source, clean_text, listed, shortened
 from pondhop.farm.formats import read_source
 from pondhop.farm.model import Doubt, Farm, Pond
-from pondhop.farm.names import name_ponds
+from pondhop.farm.names import adopt_names, name_ponds
+from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
+from pondhop.farm.projections import settle_zones
 from pondhop.farm.roles import Sorted, sort_by_role
 from pondhop.places import Area, LonLat
 
 ACCEPT_ALL = "all"
 """Accepts every doubt."""
+
+MIN_WIDTH_M = 2.0
+"""Of water in which a drone can tell that it is over it: satellites place it to a metre or two."""
+
+MAX_NARROW_M = 10.0
+"""An outline whose area is larger than its diagonal times this has room enough, and is not measured."""
 
 MIN_FENCED_SHARE = 0.9
 """Of the ponds must lie in an area for it to be taken as a fence by its name alone."""
@@ -65,6 +73,7 @@ def read_farm(
     """
     with _collection_paused():
         source = read_source(Path(path), layers)
+        settle_zones(source, depot)
         features = list(source.features)
         told = _sorted(source)
         drafts = read_ponds(told, source)
@@ -75,7 +84,7 @@ def read_farm(
         found_depot = depot_of(told, depot, source)
         stations = [point for feature in told.stations if (point := point_of(feature, "station", source)) is not None]
         no_fly, fences = _areas(told, drafts, source)
-        doubts = _doubts(drafts, source)
+        doubts = [*_doubts(drafts, source), *_told_odd(drafts, told, source)]
         drafts = ponds_of_one_farm(
             drafts,
             found_depot,
@@ -124,6 +133,7 @@ def _sorted(source: Source) -> Sorted:
     if not source.features and not source.faults:
         action = "export the layer that holds the ponds"
         source.faults.append(Fault("file", "there is no feature in this file", action))
+    adopt_names(source.features, source)
     wrap_longitudes(source.features, source.notes)
     misplaced = check_coordinates(source.features)
     source.faults.extend(misplaced)
@@ -159,6 +169,7 @@ def _tell_misnamed(feature: Feature, role: str, inside: float, source: Source) -
 def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     """What makes the place of a pond a guess: corners placed or joined while reading, and ponds that lie in ponds."""
     doubts = [Doubt(draft.id, f"{draft.feature.place}: {told}") for draft in drafts for told in draft.feature.doubts]
+    doubts.extend(_narrow(drafts, source))
     offsets = [
         (-shapes.clearance_m(draft.sampling_point, draft.outline), draft.feature.place)
         for draft in drafts
@@ -181,6 +192,29 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
             kind="ponds in ponds",
         )
         doubts.append(Doubt(drafts[inner].id, f"{drafts[inner].feature.place}: {told}"))
+    return doubts
+
+
+def _narrow(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
+    """Ponds with less room around their sampling point than a drone that knows where it is only so well needs."""
+    doubts = []
+    for draft in drafts:
+        if not draft.outline or draft.area_m2 > MAX_NARROW_M * shapes.extent_m(draft.outline):
+            continue
+        # The file may have put the sampling point anywhere; how wide the water is asked of the best place.
+        width_m = 2.0 * shapes.clearance_m(shapes.point_inside(draft.outline), draft.outline)
+        if width_m < MIN_WIDTH_M:
+            told = f"pond {draft.id} is {width_m:.2g} m wide where it is widest, which is no room for a drone"
+            source.notes.add(f"{draft.feature.place}: {told}; is it a sliver?", kind="narrow ponds")
+            doubts.append(Doubt(draft.id, f"{draft.feature.place}: {told}"))
+    return doubts
+
+
+def _told_odd(drafts: Sequence[Draft], told: Sorted, source: Source) -> list[Doubt]:
+    """Ponds that are not called like the others, with a note each."""
+    doubts = odd_names(drafts, told.sure)
+    for doubt in doubts:
+        source.notes.add(f"{doubt.message}.", kind="odd names")
     return doubts
 
 
@@ -228,4 +262,6 @@ def doubt_fault(doubts: Sequence[Doubt]) -> Fault:
     options = " ".join(f"--accept {quote(name)}" for name in dict.fromkeys(doubt.pond_id for doubt in doubts))
     told = listed((doubt.message for doubt in doubts), 3)
     action = f"correct the file; or look where these ponds are sampled, and if that is right pass {options}"
+    if any(": is " in doubt.message for doubt in doubts):
+        action = f"give what is no pond a role, as in no_fly or other; {action}"
     return Fault("farm", f"the place of a pond is a guess: {told}", action)

@@ -22,7 +22,7 @@ POND_COLUMNS = frozenset(map(normal_name, column_words("ponds")))
 """Columns that tell one pond from another."""
 
 ROLE_COLUMNS = column_words("roles")
-_KIND_COLUMNS = column_words("kinds")
+KIND_COLUMNS = column_words("kinds")
 _DECLARING_COLUMNS = ("service_s", "sampling_point", "pond_id", "pond", "pond_name", "pond_no", "pond_number")
 
 _OSM_OTHER = ("building", "highway", "railway", "aeroway", "power", "barrier", "man_made", "amenity")
@@ -41,6 +41,9 @@ _OSM_VALUES: dict[str, dict[str, Meaning]] = {
     "water": dict.fromkeys(("pond", "fishpond", "reservoir", "basin", "lake", "lagoon"), Meaning.POND),
     "waterway": dict.fromkeys(("river", "stream", "canal", "drain", "ditch", "dam", "weir"), Meaning.OTHER),
 }
+
+OSM_KEYS = (*_OSM_OTHER, *_OSM_VALUES)
+"""Tags of OpenStreetMap that say what a feature is, not what it is called."""
 
 
 @dataclass
@@ -249,7 +252,7 @@ def _decided(text: str, *, is_line: bool) -> Meaning | None:
 
 def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None, str]]:
     """What kinds, map tags, folders and styles say, the nearest to the feature first."""
-    for key in present_columns(tuple(feature.properties), _KIND_COLUMNS):
+    for key in present_columns(tuple(feature.properties), KIND_COLUMNS):
         value = feature.properties[key]
         if isinstance(value, str) and not is_blank(value):
             yield _decided(value, is_line=False), f"its {key} is {value[:40]!r}"

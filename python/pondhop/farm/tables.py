@@ -10,13 +10,15 @@ import csv
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pondhop.errors import Fault
 from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
 from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees
-from pondhop.farm.features import Feature, Geometry, Source, is_blank, listed, normal_name, shortened
-from pondhop.farm.projections import reproject, utm_crs
+from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank, listed, normal_name, shortened
+from pondhop.farm.letter_o import sign_of_o
+from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
 from pondhop.places import LonLat
 
@@ -107,6 +109,7 @@ def read_sheet_rows(sheets: dict[str, list[list[str]]], source: Source) -> None:
         source.notes.add(f"Left out, because they have no coordinates: sheets {listed(map(repr, failed))}.")
     for inner in (readable or failed).values():
         source.features.extend(inner.features)
+        source.open_zones.extend(inner.open_zones)
         source.faults.extend(inner.faults)
         for sentence in inner.notes.sentences():
             source.notes.add(sentence)
@@ -133,26 +136,50 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> None:
     if not below:
         source.faults.append(Fault("file", "the table has no line but the first", "add a line for each pond"))
         return
+    columns = replace(columns, sign_of_o=sign_of_o(columns, below, word, source))
+    if not columns.sign_of_o:
+        return
     features: list[Feature] = []
-    zones: dict[str, list[Feature]] = {}
+    zones: dict[str | int, list[Feature]] = {}
+    has_bands = any(
+        names_band(row[columns.zone]) for _, row in below if columns.zone is not None and columns.zone < len(row)
+    )
     for number, row in below:
         feature = _read_row(f"{word} {number}", row, columns, source)
         if feature is None:
             continue
-        features.append(feature)
         if columns.zone is not None:
-            zone = utm_crs(row[columns.zone]) if columns.zone < len(row) else None
+            zone = _zone(feature, row, columns, source, has_bands=has_bands)
             if zone is None:
-                place = feature.property_place.format(columns.names[columns.zone])
-                message = (
-                    f"{shortened(row[columns.zone].strip() if columns.zone < len(row) else '')!r} is no zone of UTM"
-                )
-                source.faults.append(Fault(place, message, "write number and hemisphere, as in 48N or 17S"))
-            else:
-                zones.setdefault(zone, []).append(feature)
+                continue
+            zones.setdefault(zone, []).append(feature)
+        features.append(feature)
     for zone, members in zones.items():
-        reproject(zone, f"column {columns.names[columns.zone or 0]}", members, source)
-    source.features.extend(_joined_corners(features, columns, source))
+        if isinstance(zone, str):
+            reproject(zone, f"column {columns.names[columns.zone or 0]}", members, source)
+    joined = _joined_corners(features, columns, source)
+    for zone, members in zones.items():
+        if isinstance(zone, int):
+            places = {feature.place for feature in members}
+            told = members[0].property_place.format(columns.names[columns.zone or 0])
+            source.open_zones.append(OpenZone(zone, told, [feature for feature in joined if feature.place in places]))
+    source.features.extend(joined)
+
+
+def _zone(
+    feature: Feature, row: Sequence[str], columns: Columns, source: Source, *, has_bands: bool
+) -> str | int | None:
+    """The coordinate system of a line with a zone of UTM, or its fault."""
+    cells = ["" if index is None or index >= len(row) else row[index] for index in (columns.zone, columns.zone_side)]
+    side = hemisphere(cells[1])
+    northing_m = feature.geometry.points[0][1] if feature.geometry.points else 0.0
+    zone = utm_crs(cells[0], side[1] if side else 0, northing_m, has_bands=has_bands)
+    if zone is None:
+        place = feature.property_place.format(columns.names[columns.zone or 0])
+        action = "write number and hemisphere, as in 48N or 17S, or add a column hemisphere"
+        told = f"{shortened(feature.name)!r}: " if feature.name else ""
+        source.faults.append(Fault(place, f"{told}{shortened(cells[0].strip())!r} is no zone of UTM", action))
+    return zone
 
 
 def _header(rows: Sequence[Row], word: str, source: Source) -> tuple[int, Columns | None]:
@@ -190,7 +217,7 @@ def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) 
             if len(parts) != 2:
                 source.faults.append(Fault(column, "the cell holds no pair of numbers", "write latitude, longitude"))
                 return None
-            lat, lon = parse_degrees(parts[0], "lat"), parse_degrees(parts[1], "lon")
+            lat, lon = parse_degrees(parts[0], "lat"), parse_degrees(parts[1], "lon", columns.sign_of_o)
             if lat is None or lon is None:
                 shown = shortened(cells[columns.pair].strip())
                 source.faults.append(Fault(column, f"{shown!r} is no number", "write latitude, longitude in degrees"))
@@ -224,12 +251,12 @@ def _number(
     if is_blank(cell):
         source.faults.append(Fault(place, "the cell is empty", "fill in decimal degrees, or delete the line"))
         return None
-    number = metres(cell) if columns.zone is not None else parse_degrees(cell, axis)
+    number = metres(cell) if columns.zone is not None else parse_degrees(cell, axis, columns.sign_of_o)
     if number is None:
         action = "write metres, as in 576800" if columns.zone is not None else "write decimal degrees, as in -89.17"
         source.faults.append(Fault(place, f"{shortened(cell.strip())!r} is no number", action))
         return None
-    sign, told = columns.signs.get(axis, 1), "its heading"
+    sign, told = columns.signs.get(axis, 1) or columns.sign_of_o, "its heading"
     if axis in columns.sides:
         letter = cells[columns.sides[axis]]
         side = hemisphere(letter)
@@ -239,7 +266,7 @@ def _number(
                 Fault(place, f"{shortened(letter)!r} in {told} is no hemisphere", "write N, S, E or W")
             )
             return None
-        sign = side[1] if side is not None else 1
+        sign = side[1] or columns.sign_of_o if side is not None else 1
         if number < 0.0 < sign and side is not None:
             message = f"{cell.strip()} is negative, but {told} says {letter.strip()}"
             source.faults.append(Fault(place, message, "correct the sign, or the letter"))

@@ -30,3 +30,14 @@ def column_words(kind: str) -> tuple[str, ...]:
 def hemisphere_words() -> dict[str, tuple[str, ...]]:
     """Letters and words for north, south, east and west."""
     return {side: _parted(text) for side, text in _tables()["hemispheres"].items()}
+
+
+def letter_o_words() -> dict[str, frozenset[str]]:
+    """Words of the languages in which the letter O is east, and of those in which it is west."""
+    return {side: frozenset(word.casefold() for word in _parted(text)) for side, text in _tables()["letter_o"].items()}
+
+
+@cache
+def pond_like_words() -> frozenset[str]:
+    """Words in names of ponds that are no words for ponds."""
+    return frozenset(word.casefold() for word in _parted(_tables()["pond_like"]["words"]))

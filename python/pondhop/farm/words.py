@@ -1,7 +1,8 @@
 """What the names of features say, in the languages of those who farm ponds.
 
 Words of the Latin, Greek and Cyrillic alphabets match as whole words, accents aside where they are long enough; of
-other scripts, which do not set words apart or write endings onto them, they match anywhere. Longer phrases match first
+other scripts, which do not set words apart or write endings onto them, they match anywhere; after a sign = only as the
+whole name. Longer phrases match first
 and their letters are used up: a "pump house" is no house, and the pond in "battery" (電池) is none.
 """
 
@@ -62,6 +63,11 @@ def _words(text: str) -> list[str]:
     ]
 
 
+def plain_words(text: str) -> list[str]:
+    """The words of a name without digits and signs, as they are written; in scripts without blanks whole runs."""
+    return _LETTER_RUN.findall(unicodedata.normalize("NFC", text).casefold())
+
+
 @cache
 def _phrases() -> tuple[dict[str, list[tuple[tuple[str, ...], Meaning]]], list[tuple[str, Meaning]]]:
     """Phrases of spaced scripts by their first word, and those of the others; the longest first."""
@@ -93,7 +99,7 @@ def meanings(text: str) -> frozenset[Meaning]:
         for phrase, meaning in joined:
             if _stands_in(phrase, meaning, plain):
                 found.update(other for same, other in joined if same == phrase)
-                plain = plain.replace(phrase, " ")
+                plain = plain.replace(phrase.removeprefix("="), " ")
     words = _words(text)
     at = 0
     while at < len(words):
@@ -113,6 +119,8 @@ def _stands_in(phrase: str, meaning: Meaning, text: str) -> bool:
     A single sign is part of too many names: pond "east of the river" is none. It counts at the end, where these
     languages put what a thing is; only a sign for ponds counts anywhere.
     """
+    if phrase.startswith("="):
+        return re.sub(r"[\W\d_号號]+", "", text) == re.sub(r"[\W_]+", "", phrase)
     if len(phrase) > 1 or meaning is Meaning.POND:
         return phrase in text
     return re.sub(r"[\W\d_号號]+$", "", text).endswith(phrase)
