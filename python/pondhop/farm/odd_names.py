@@ -60,14 +60,14 @@ def odd_names(drafts: Sequence[Draft], sure: set[str]) -> list[Doubt]:
     if len(odd) > max(1, int(MAX_ODD_SHARE * sum(follows))):
         return []
     others = listed((repr(shortened(name)) for name, fits in zip(names, follows, strict=True) if fits), 2)
-    keys = {id(draft.feature): draft.feature for draft in odd}
+    odd_features = {id(draft.feature) for draft in odd}
     return [
         Doubt(
             draft.id,
             f"{draft.feature.place}: is {shortened(draft.feature.name)!r} a pond? The others are called {others}",
         )
         for draft in drafts
-        if id(draft.feature) in keys
+        if id(draft.feature) in odd_features
     ]
 
 
