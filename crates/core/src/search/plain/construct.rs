@@ -1,14 +1,19 @@
-//! A first plan: balanced sectors around the depot, each toured along a space-filling curve and then improved.
+//! A first plan: parts of the farm, one for each route, toured along a space-filling curve and then improved. Parts are balanced
+//! sectors around the depot, or come from random straight cuts.
 //!
 //! Sources: the sweep of Gillett and Miller, Operations Research 1974, with the sectors balanced by the cost of their tours
-//! instead of by load; Bartholdi and Platzman, Management Science 1988, for the curve as a tour.
+//! instead of by load; Bartholdi and Platzman, Management Science 1988, for the curve as a tour; the cuts as in the recursive
+//! coordinate bisection of Berger and Bokhari, IEEE Transactions on Computers 1987, but in random directions.
 //!
 //! A sweep beats cutting one giant tour on farms: the routes of good min-max plans are petals around the depot. The first sector
 //! begins at the widest gap, which is where the farm ends if the depot is at its edge. Which petals are best cannot be seen
-//! from the sectors, so the search starts from several cuts. O(n log n).
+//! from the sectors, so the search starts from several cuts. Best plans that are no petals, such as one route behind another,
+//! are never found from sectors, however long the search: random cuts begin there. O(n log n).
 
 use super::network::Network;
 use super::order::{curve_keys, ends_by_cost, place_after_widest_gap, pseudo_angle};
+use crate::geometry::Point;
+use crate::random::Random;
 
 /// The visits by their angle around the depot, and what that order makes of them.
 pub(super) struct Sectors<'a> {
@@ -48,13 +53,36 @@ impl<'a> Sectors<'a> {
     }
 
     fn tour_sectors(&self, ends: &[usize]) -> Vec<Vec<u32>> {
-        let tour = |range: &[usize]| {
-            let mut route = self.visits[range[0]..range[1]].to_vec();
-            route.sort_unstable_by_key(|&visit| (self.curve_keys[visit as usize], visit));
-            open_at_best_leg(self.network, &mut route);
-            route
+        ends.windows(2).map(|range| self.tour(self.visits[range[0]..range[1]].to_vec())).collect()
+    }
+
+    /// One route from each of `num_routes` parts of `visits`, about equally many in each: straight lines in random directions
+    /// halve the number of routes until each part has one. O(n log m).
+    pub fn cut_at_random(&self, visits: &mut [u32], num_routes: usize, random: &mut Random) -> Vec<Vec<u32>> {
+        if num_routes == 1 {
+            return vec![self.tour(visits.to_vec())];
+        }
+        let num_first = num_routes / 2;
+        let num_visits = visits.len() * num_first / num_routes;
+        // A direction without trigonometry: the same on every machine.
+        let direction = Point::new(2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0);
+        let along = |visit: u32| {
+            let point = self.network.points[visit as usize];
+            point.x * direction.x + point.y * direction.y
         };
-        ends.windows(2).map(tour).collect()
+        if num_visits > 0 {
+            visits.select_nth_unstable_by(num_visits, |&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
+        }
+        let (first, second) = visits.split_at_mut(num_visits);
+        let mut routes = self.cut_at_random(first, num_first, random);
+        routes.extend(self.cut_at_random(second, num_routes - num_first, random));
+        routes
+    }
+
+    fn tour(&self, mut visits: Vec<u32>) -> Vec<u32> {
+        visits.sort_unstable_by_key(|&visit| (self.curve_keys[visit as usize], visit));
+        open_at_best_leg(self.network, &mut visits);
+        visits
     }
 }
 
@@ -73,4 +101,46 @@ pub(crate) fn open_at_best_leg(network: &Network, route: &mut [u32]) {
         }
     }
     route.rotate_left(best);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{Variant, generate};
+    use crate::search::plain::testing::research_network;
+
+    #[test]
+    fn random_cuts_share_the_visits_evenly_and_apart() {
+        let farm = generate(97, Variant::Authors, 2).unwrap();
+        let network = research_network(farm.depot, &farm.ponds, 5);
+        let sectors = Sectors::new(&network);
+        let mut random = Random::new(1);
+        for _ in 0..20 {
+            let mut visits: Vec<u32> = (0..97).collect();
+            let routes = sectors.cut_at_random(&mut visits, 5, &mut random);
+            let mut served = routes.concat();
+            served.sort_unstable();
+            assert_eq!(served, (0..97).collect::<Vec<u32>>());
+            assert!(routes.iter().all(|route| (18..=21).contains(&route.len())), "{routes:?}");
+        }
+    }
+
+    #[test]
+    fn two_parts_of_a_line_are_its_halves() {
+        let ponds: Vec<Point> = (0..10).map(|x| Point::new(f64::from(x), 0.0)).collect();
+        let network = research_network(Point::new(0.0, 1.0), &ponds, 2);
+        let sectors = Sectors::new(&network);
+        let mut routes = sectors.cut_at_random(&mut (0..10).rev().collect::<Vec<u32>>(), 2, &mut Random::new(4));
+        routes.iter_mut().for_each(|route| route.sort_unstable());
+        routes.sort();
+        assert_eq!(routes, [vec![0, 1, 2, 3, 4], vec![5, 6, 7, 8, 9]]);
+    }
+
+    #[test]
+    fn more_parts_than_visits_leave_some_empty() {
+        let ponds = [Point::new(1.0, 0.0), Point::new(2.0, 3.0)];
+        let network = research_network(Point::new(0.0, 0.0), &ponds, 2);
+        let routes = Sectors::new(&network).cut_at_random(&mut [0, 1], 5, &mut Random::new(4));
+        assert_eq!((routes.len(), routes.concat().len()), (5, 2));
+    }
 }

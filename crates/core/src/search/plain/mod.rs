@@ -4,11 +4,12 @@
 //! too little time for neighbour lists? sectors toured along strips, smoothed, balanced; stop             rough, smooth
 //! sectors around the depot, balanced by the cost of their tours, each toured along a Hilbert curve       construct, order
 //! 2-opt and Or-opt on each route                                                                         improve
-//! enough time? the same for up to 16 cuts of the sectors; race them by ruin and recreate                 population
+//! enough time? the same for up to 16 cuts of the farm; race them by ruin and recreate                    starts, population
 //! a lot of time? keep 4 to 16 of them; until 88 % of the time:                                           population
 //!     a child of two: some routes of one, side by side, the others of the other, the seam mended         recombine
 //!     anneal it as below; give it what is better in the others                                           cycles, assemble
 //!     even out its routes, as below; it replaces the worst, if it is better                              population
+//!     even more time? 2 to 16 races with children first, one after the other; the best of all go on      islands
 //! else, until 88 % of the time:                                                                          anneal
 //!     take some ten visits out, as strings of neighbouring routes, half the time around the longest      ruin
 //!     put each back where it is cheapest, a route that grows too long charged 10 or 1,000 times the excess;
@@ -44,9 +45,11 @@
 //! 17. `assemble`: puts into a plan what is better in another.
 //! 18. `recombine`: makes a plan of two.
 //! 19. `context`: what the parts of one search share.
-//! 20. `population`: several plans at once, and their children.
-//! 21. `cooperate`: where threads meet.
-//! 22. `run`: one search from start to end.
+//! 20. `starts`: the plans that a search begins with.
+//! 21. `population`: several plans at once, and their children.
+//! 22. `islands`: several populations, and the best of them together.
+//! 23. `cooperate`: where threads meet.
+//! 24. `run`: one search from start to end.
 
 mod airspace;
 mod anneal;
@@ -57,6 +60,7 @@ mod context;
 mod cooperate;
 mod cycles;
 mod improve;
+mod islands;
 mod limits;
 mod lin_kernighan;
 mod moves;
@@ -69,6 +73,7 @@ mod rough;
 mod ruin;
 mod run;
 mod smooth;
+mod starts;
 mod state;
 #[cfg(test)]
 mod testing;

@@ -11,23 +11,19 @@ use super::assemble::assemble;
 use super::balance::balance;
 use super::construct::Sectors;
 use super::context::{MAX_HEAT, Search};
-use super::improve::improve_routes;
-use super::recombine::cross;
+use super::recombine::{cross, recut};
+use super::starts::Starts;
 use super::state::State;
 use crate::effort::Effort;
 use crate::random::Random;
 use crate::search::objective::{Objective, RouteCosts};
 
-/// Share of the effort at which the race of the starts ends.
+/// Share of a population's effort at which the race of the starts ends.
 const RACE_END: f64 = 0.25;
 /// Starts in a race, at most.
 const MAX_STARTS: usize = 16;
-/// How far the shares of the sectors of a start are from equal, at most: wide enough for other petals to win.
-const SHARE_SPREAD: f64 = 0.3;
 /// Steps per visit and start below which a race gains less than it costs.
 const RACE_STEPS_PER_VISIT: f64 = 5.0;
-/// Steps that take as long as making a start, per visit.
-const START_STEPS_PER_VISIT: f64 = 0.3;
 /// Steps per visit of the whole effort from which on several plans with children are better than one that is annealed longer:
 /// at least the first, and the second times the number of visits.
 const CHILDREN_STEPS_PER_VISIT: (f64, f64) = (60.0, 0.2);
@@ -38,8 +34,10 @@ const MIN_PARENTS: usize = 4;
 const MAX_PARENTS: usize = 16;
 /// Steps per visit for one child, at least.
 const CHILD_STEPS_PER_VISIT: f64 = 10.0;
-/// Share of the effort for one child, at least: with more children they become alike before the effort is used.
+/// Share of a population's effort for one child, at least: with more children they become alike before the effort is used.
 const MIN_CHILD_SHARE: f64 = 0.006;
+/// Share of the children that are one plan with some routes cut anew, where there are such.
+const RECUT_SHARE: f64 = 0.25;
 /// Share of what is left for children that plans are annealed for when only the total counts from then on.
 const TURN_SHARE: f64 = 0.25;
 /// Parts of other plans are first judged by the sum of this power of the routes' costs: low enough for a longer route to be
@@ -49,39 +47,72 @@ const CROWDING_POWER: i32 = 16;
 const RACE_HEAT: (f64, f64) = (3e-3, 3e-7);
 const CHILD_HEAT: (f64, f64) = (MAX_HEAT.0, RACE_HEAT.1);
 
+/// How a population breeds.
+pub(super) struct Breeding<'a> {
+    /// The shares of the effort between which it does.
+    pub begin: f64,
+    pub end: f64,
+    /// Steps a visit that the whole effort is worth.
+    pub steps_per_visit: f64,
+    /// Number of its random stream, another for each population of a search.
+    pub stream: u64,
+    /// What cuts routes of children anew: `None`, if none are.
+    pub recuts_along: Option<&'a Sectors<'a>>,
+    /// Longest route of the best plan of other populations, so that progress tells of the best of all.
+    pub longest_elsewhere: f64,
+}
+
 /// The plans of one thread, the best first.
-pub(super) struct Population {
+pub(super) struct Population<'a> {
     chains: Vec<Chain<SharedAirspace>>,
+    breeding: Breeding<'a>,
     random: Random,
-    /// Share of the effort for one child.
-    child_share: f64,
     /// What no route may cost more than, once only the total counts.
     cap: Option<f64>,
 }
 
-impl Population {
-    /// One plan, which has no children.
-    pub fn single(chain: Chain<SharedAirspace>) -> Self {
-        Self { chains: vec![chain], random: Random::new(0), child_share: 0.0, cap: None }
+impl Breeding<'_> {
+    /// Steps a visit of this population.
+    fn own_steps_per_visit(&self) -> f64 {
+        self.steps_per_visit * (self.end - self.begin)
     }
 
-    /// Makes as many starts as the effort allows, improves all for a while and keeps the better half, until those are left that
-    /// can have enough children: one, if there is no effort for children.
-    pub fn race(search: &Search<'_>, effort: &mut Effort<'_>, thread: usize) -> Self {
-        let sectors = Sectors::new(search.network);
-        let start = |index: usize| {
-            let stream = (index * search.options.num_threads + thread) as u64;
-            let mut routes = sectors.routes(&shares(search, stream));
-            improve_routes(search.network, search.budget, &mut routes);
-            search.chain_from(&routes, stream)
+    /// Share of the effort for one child.
+    fn child_share(&self) -> f64 {
+        (CHILD_STEPS_PER_VISIT / self.steps_per_visit).max(MIN_CHILD_SHARE * (self.end - self.begin))
+    }
+}
+
+impl<'a> Population<'a> {
+    /// The best of `chains`, as many as can be parents.
+    pub fn new(search: &Search<'_>, mut chains: Vec<Chain<SharedAirspace>>, breeding: Breeding<'a>) -> Self {
+        sort(&mut chains);
+        chains.truncate(MAX_PARENTS);
+        let random = Random::new(search.seed(u64::MAX - breeding.stream));
+        Self { chains, breeding, random, cap: None }
+    }
+
+    /// One plan, which has no children.
+    pub fn single(search: &Search<'_>, chain: Chain<SharedAirspace>) -> Self {
+        let breeding = Breeding {
+            begin: 0.0,
+            end: 1.0,
+            steps_per_visit: 0.0,
+            stream: 0,
+            recuts_along: None,
+            longest_elsewhere: f64::INFINITY,
         };
-        let begin = effort.share();
-        let mut chains = vec![start(0)];
-        let start_steps = START_STEPS_PER_VISIT * search.network.num_visits as f64;
-        // Steps a visit that the whole effort is worth.
-        let steps_per_visit = START_STEPS_PER_VISIT / search.budget.share_of_work(start_steps, begin);
+        Self::new(search, vec![chain], breeding)
+    }
+
+    /// Takes in as many more starts as the effort allows, improves all for a while and keeps the better half, until those are
+    /// left that can have enough children: one, if there is no effort for children.
+    pub fn race(&mut self, search: &Search<'_>, effort: &mut Effort<'_>, starts: &mut Starts<'_>) {
+        let steps_per_visit = self.breeding.own_steps_per_visit();
         let num_starts = ((steps_per_visit / RACE_STEPS_PER_VISIT) as usize).clamp(1, MAX_STARTS);
-        chains.extend((1..num_starts).take_while(|_| !search.budget.is_time_over()).map(start));
+        while self.chains.len() < num_starts && !search.budget.is_time_over() {
+            self.chains.push(starts.make());
+        }
         let least_steps_per_visit =
             CHILDREN_STEPS_PER_VISIT.0.max(CHILDREN_STEPS_PER_VISIT.1 * search.network.num_visits as f64);
         let num_parents = if steps_per_visit < least_steps_per_visit || search.network.num_routes == 1 {
@@ -89,31 +120,28 @@ impl Population {
         } else {
             ((steps_per_visit / STEPS_PER_VISIT_AND_PARENT) as usize).clamp(MIN_PARENTS, MAX_PARENTS)
         };
-        let random = Random::new(search.seed(u64::MAX - thread as u64));
-        let child_share = (CHILD_STEPS_PER_VISIT / steps_per_visit).max(MIN_CHILD_SHARE);
-        let mut population = Self { chains, random, child_share, cap: None };
-        let num_starts = population.chains.len();
+        let num_starts = self.chains.len();
         let num_rounds = (num_starts as f64 / num_parents as f64).log2().ceil() as usize;
         // Also starts that are all to be parents must first be improved.
         for rounds_left in (1..=num_rounds.max(usize::from(num_starts > 1))).rev() {
             // If there will be children, they get the effort that the longest route does not need.
             let floor = if num_parents > 1 && search.is_lexicographic() { search.floor() } else { 0.0 };
-            population.run_round(search, effort, rounds_left, floor);
-            if population.best().best.is_down_to(floor) {
-                population.chains.truncate(num_parents);
+            self.run_round(search, effort, rounds_left, floor);
+            if self.best().best.is_down_to(floor) {
+                self.chains.truncate(num_parents);
                 break;
             }
-            population.chains.truncate(population.chains.len().div_ceil(2).max(num_parents));
+            self.chains.truncate(self.chains.len().div_ceil(2).max(num_parents));
         }
-        population
     }
 
     /// Anneals all plans for the same share of what is left for the race, or until one has no route that costs more than `floor`.
     fn run_round(&mut self, search: &Search<'_>, effort: &mut Effort<'_>, rounds_left: usize, floor: f64) {
         let begin = effort.share();
-        let slice = (RACE_END - begin).max(0.0) / rounds_left as f64 / self.chains.len() as f64;
+        let end = self.breeding.begin + RACE_END * (self.breeding.end - self.breeding.begin);
+        let slice = (end - begin).max(0.0) / rounds_left as f64 / self.chains.len() as f64;
         effort.longest_elsewhere =
-            self.chains.iter().map(|chain| chain.best.max_route_cost()).fold(f64::INFINITY, f64::min);
+            self.chains.iter().map(|chain| chain.best.max_route_cost()).fold(self.breeding.longest_elsewhere, f64::min);
         for (index, chain) in self.chains.iter_mut().enumerate() {
             let from = begin + slice * index as f64;
             chain.restart(chain.objective);
@@ -139,6 +167,11 @@ impl Population {
         self.chains.swap_remove(0)
     }
 
+    /// All plans, the best first.
+    pub fn into_chains(self) -> impl Iterator<Item = Chain<SharedAirspace>> {
+        self.chains.into_iter()
+    }
+
     /// Takes in a plan that is better than all: in the place of the worst.
     pub fn welcome(&mut self, state: &State) {
         if let Some(worst) = self.chains.last_mut() {
@@ -161,21 +194,26 @@ impl Population {
             effort.longest_elsewhere = f64::INFINITY;
             return self.chains[0].anneal(search.network, effort, schedule, until, floor);
         }
-        let mut share = effort.share();
+        self.breed(search, effort, until, floor);
         // Where all is at the depot, no step is made.
-        while share < until && !self.best().best.is_down_to(0.0) {
-            if self.cap.is_none() && self.best().best.is_down_to(floor) {
-                if !search.is_lexicographic() {
-                    return;
-                }
-                self.turn_to_total(search, effort, floor, until);
-                share = effort.share();
-                continue;
-            }
+        let can_turn =
+            search.is_lexicographic() && self.best().best.is_down_to(floor) && !self.best().best.is_down_to(0.0);
+        if can_turn && self.cap.is_none() && effort.share() < until {
+            self.turn_to_total(search, effort, floor, until);
+            self.breed(search, effort, until, floor);
+        }
+    }
+
+    /// Improves the plans by children until the share `until` of the effort is used, or, while the longest route counts, no
+    /// route costs more than `floor`.
+    pub fn breed(&mut self, search: &Search<'_>, effort: &mut Effort<'_>, until: f64, floor: f64) {
+        let floor = if self.cap.is_none() { floor } else { 0.0 };
+        let mut share = effort.share();
+        while share < until && self.chains.len() > 1 && !self.best().best.is_down_to(floor) {
             let mut child = self.child(search);
-            effort.longest_elsewhere = self.best().best.max_route_cost();
-            let end = (share + self.child_share).min(until);
-            anneal(search, effort, &mut child, (share, end), CHILD_HEAT, if self.cap.is_none() { floor } else { 0.0 });
+            effort.longest_elsewhere = self.best().best.max_route_cost().min(self.breeding.longest_elsewhere);
+            let end = (share + self.breeding.child_share()).min(until);
+            anneal(search, effort, &mut child, (share, end), CHILD_HEAT, floor);
             share = effort.share();
             self.take(search, child);
         }
@@ -183,8 +221,13 @@ impl Population {
 
     fn child(&mut self, search: &Search<'_>) -> Chain<SharedAirspace> {
         let keeper = self.random.below(self.chains.len());
-        let giver = (keeper + 1 + self.random.below(self.chains.len() - 1)) % self.chains.len();
-        let state = cross(search.network, &self.chains[keeper].best, &self.chains[giver].best, &mut self.random);
+        let sectors = self.breeding.recuts_along.filter(|_| self.random.uniform() < RECUT_SHARE);
+        let state = if let Some(sectors) = sectors {
+            recut(search.network, search.budget, sectors, &self.chains[keeper].best, &mut self.random)
+        } else {
+            let giver = (keeper + 1 + self.random.below(self.chains.len() - 1)) % self.chains.len();
+            cross(search.network, &self.chains[keeper].best, &self.chains[giver].best, &mut self.random)
+        };
         let objective = match self.cap {
             None => Objective::longest_route(search.network.num_routes, state.costs()),
             Some(cap) => Objective::total_within(cap, state.costs()),
@@ -279,11 +322,4 @@ fn anneal(
 ) {
     let schedule = Schedule::scaled(begin, end, heat, chain.best.max_route_cost());
     chain.anneal(search.network, effort, &schedule, end, floor);
-}
-
-/// Shares of the sectors of a start: equal for the first, random about that for the others.
-fn shares(search: &Search<'_>, stream: u64) -> Vec<f64> {
-    let spread = if stream == 0 { 0.0 } else { SHARE_SPREAD };
-    let mut random = Random::new(search.seed(stream));
-    (0..search.network.num_routes).map(|_| 1.0 + spread * (2.0 * random.uniform() - 1.0)).collect()
 }

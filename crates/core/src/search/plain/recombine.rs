@@ -1,4 +1,4 @@
-//! Makes a plan of two: neighbouring routes of one among the routes of the other.
+//! Makes a plan of two: neighbouring routes of one among the routes of the other. Or of one: some neighbouring routes cut anew.
 //!
 //! Problem: runs of the search end in plans that are almost equally good but differ in a fifth of their visits, and a longer
 //! run of one is no better than several short ones. What each of them found must be put together.
@@ -7,15 +7,20 @@
 //! (HGA). Changed: the routes taken lie side by side, so that only the seam between the parents has to be mended. O(n).
 
 use super::airspace::SharedAirspace;
+use super::construct::Sectors;
+use super::improve::improve_routes;
 use super::network::Network;
 use super::order::pseudo_angle;
 use super::recreate::Recreate;
 use super::state::{ABSENT, State, Touched};
+use crate::effort::Budget;
 use crate::random::Random;
 use crate::search::objective::Objective;
 
 /// Runs of routes tried for one child.
 const NUM_RUNS: usize = 8;
+/// Visits passed on the way to neighbouring routes, at most.
+const MAX_WALK: usize = 64;
 
 /// A child that takes a run of routes from `giver`, neighbours by their angle around the depot, and the other routes from
 /// `keeper`; the best by total of [`NUM_RUNS`] random runs. What is then in no route is put back where it is cheapest. A giver
@@ -35,6 +40,41 @@ pub(super) fn cross(network: &Network, keeper: &State, giver: &State, random: &m
     });
     let shorter = |best: State, child: State| if child.total < best.total { child } else { best };
     children.reduce(shorter).unwrap_or_else(|| keeper.clone())
+}
+
+/// The plan of `keeper` with two or three of its routes, neighbours of each other, cut anew at random.
+pub(super) fn recut(
+    network: &Network,
+    budget: &Budget<'_>,
+    sectors: &Sectors<'_>,
+    keeper: &State,
+    random: &mut Random,
+) -> State {
+    let chosen = neighbouring_routes(network, keeper, 2 + random.below(2), random);
+    let (cut, kept): (Vec<usize>, Vec<usize>) = (0..network.num_routes).partition(|route| chosen.contains(route));
+    let mut visits: Vec<u32> = cut.iter().flat_map(|&route| keeper.route(network, route)).collect();
+    let mut routes = sectors.cut_at_random(&mut visits, cut.len(), random);
+    improve_routes(network, budget, &mut routes);
+    routes.extend(kept.iter().map(|&route| keeper.route(network, route)));
+    State::new(network, &routes)
+}
+
+/// Up to `num_routes` routes that a random walk from neighbour to neighbour meets.
+fn neighbouring_routes(network: &Network, state: &State, num_routes: usize, random: &mut Random) -> Vec<usize> {
+    let mut visit = random.below(network.num_visits) as u32;
+    let mut met = Vec::with_capacity(num_routes);
+    for _ in 0..MAX_WALK {
+        let route = state.nodes[visit as usize].route as usize;
+        if !met.contains(&route) {
+            met.push(route);
+        }
+        let neighbours = network.neighbours(visit);
+        if met.len() == num_routes || neighbours.is_empty() {
+            break;
+        }
+        visit = neighbours[random.below(neighbours.len())].node;
+    }
+    met
 }
 
 /// Routes that are not empty, by the angle of their middle around the depot.
@@ -133,6 +173,22 @@ mod tests {
             let (network, states) = plans(num_ponds, num_routes);
             for (keeper, giver) in states.iter().zip(&states[1..]) {
                 assert_is_sound(&network, &cross(&network, keeper, giver, &mut random));
+            }
+        }
+    }
+
+    #[test]
+    fn a_plan_cut_anew_keeps_all_but_two_or_three_of_its_routes() {
+        let mut random = Random::new(3);
+        for (num_ponds, num_routes) in [(2, 2), (30, 3), (120, 8), (40, 40)] {
+            let (network, states) = plans(num_ponds, num_routes);
+            let sectors = Sectors::new(&network);
+            for keeper in &states {
+                let child = recut(&network, &testing::unlimited(), &sectors, keeper, &mut random);
+                assert_is_sound(&network, &child);
+                let (before, after) = (keeper.routes(&network), child.routes(&network));
+                let num_kept = before.iter().filter(|route| after.contains(route)).count();
+                assert!(num_kept + 3 >= before.len(), "{num_kept} of {} kept", before.len());
             }
         }
     }

@@ -7,6 +7,7 @@ use super::construct::Sectors;
 use super::context::{MAX_HEAT, Search, TOTAL_HEAT};
 use super::cooperate::Meeting;
 use super::improve::improve_routes;
+use super::islands::settle;
 use super::lin_kernighan::shorten;
 use super::network::Network;
 use super::population::Population;
@@ -95,10 +96,11 @@ impl Thread<'_> {
     fn run(&self) -> Found {
         let search = self.search;
         let mut effort = Effort::new(search.budget);
+        let sectors = Sectors::new(search.network);
         let mut population = match (search.options.start, search.options.goal) {
-            (Some(routes), _) => Population::single(search.chain_from(&to_nodes(routes), self.index as u64)),
-            (None, Goal::Max) => Population::race(search, &mut effort, self.index),
-            (None, Goal::Total) => Population::single(self.fewest_routes()),
+            (Some(routes), _) => Population::single(search, search.chain_from(&to_nodes(routes), self.index as u64)),
+            (None, Goal::Max) => settle(search, &sectors, &mut effort, self.index),
+            (None, Goal::Total) => Population::single(search, self.fewest_routes(&sectors)),
         };
         let floor = search.floor();
         let max_end = if search.is_allowed(&population.best().best) { 0.0 } else { MAX_END };
@@ -161,9 +163,8 @@ impl Thread<'_> {
 
     /// A start for the least total: as few routes as the drones' limit allows, because every route costs two depot legs, and no
     /// later step is wide enough to give up a long one.
-    fn fewest_routes(&self) -> Chain<SharedAirspace> {
+    fn fewest_routes(&self, sectors: &Sectors<'_>) -> Chain<SharedAirspace> {
         let Search { network, budget, .. } = *self.search;
-        let sectors = Sectors::new(network);
         let mut num_routes = 1;
         loop {
             let mut routes = sectors.routes(&vec![1.0; num_routes]);
