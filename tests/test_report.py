@@ -18,6 +18,7 @@ pytest.importorskip("jinja2", reason="jinja2 is not installed: pip install matpl
 
 import pondhop
 from pondhop import InvalidInput, Problem
+from pondhop.bench.best_known import BestKnown, BestPlan
 from pondhop.bench.measure import Run, TimeLimit
 from pondhop.bench.results import read_results
 from pondhop.cli import app
@@ -117,7 +118,7 @@ def test_slow_methods_get_fewer_farms() -> None:
     ortools = next(method for method in METHODS if method.planner == "ortools")
     assert ortools.seconds(100) == 10.0
     # 10 s at 100 ponds, growing with the power of 2.5: 1.77 s at 50, 56.6 s at 200, 156 s at 300.
-    assert [FULL.num_farms_of(ortools, size) for size in FULL.num_ponds] == [100, 40, 7, 0, 0, 0]
+    assert [FULL.num_farms_of(ortools, size) for size in FULL.num_ponds] == [100, 40, 10, 0, 0, 0]
     assert [QUICK.num_farms_of(ortools, size) for size in QUICK.num_ponds] == [10, 2, 0, 0, 0, 0]
     assert TINY.num_farms_of(SLOW, 100) == 1
     assert TINY.num_farms_of(SLOW, 700) == 0
@@ -128,8 +129,10 @@ def test_slow_methods_get_fewer_farms() -> None:
 def test_a_budget_decides_how_many_farms_slow_methods_get() -> None:
     ortools = next(method for method in METHODS if method.planner == "ortools")
     scope = FULL.with_budget(60.0)
-    # 60 s at 10 s a farm of 100 ponds are 6 farms, at 56.6 s one of 200.
-    assert [scope.num_farms_of(ortools, size) for size in scope.num_ponds] == [33, 6, 1, 0, 0, 0]
+    # 60 s at 1.77 s a farm of 50 ponds are 33 farms, at 10 s 6 of 100, at 56.6 s one of 200; but 10 is the least.
+    assert [scope.num_farms_of(ortools, size) for size in scope.num_ponds] == [33, 10, 10, 0, 0, 0]
+    pyvrp = next(method for method in METHODS if method.planner == "pyvrp")
+    assert [FULL.with_budget(25.0).num_farms_of(pyvrp, size) for size in FULL.num_ponds] == [10, 10, 10, 2, 2, 2]
     assert max(scope.anytime_limits_s) == 10.0
     assert scope.options == " --budget 60"
     assert FULL.with_budget(400.0).anytime_limits_s == FULL.anytime_limits_s
@@ -316,6 +319,16 @@ def test_what_is_sampled_or_left_out_is_said(report: Report) -> None:
     assert "ghost" in (report.folder / "report.html").read_text()
     text = page.markdown(Tables(_with_farm_budget(report, 0.3)))
     assert "- `slow, mine`: no farm with 20 and 50 ponds (expected to take 358 ms and more)\n" in text
+
+
+def test_gaps_can_be_measured_from_plans_of_longer_runs(report: Report) -> None:
+    run = runs_by_hand(report, "hpp", "authors20-seed1")[0]
+    half = BestPlan(run.set_name, run.farm, run.num_routes, run.max_route_length / 2, digest=run.digest)
+    tables = Tables(report.measurements, BestKnown([half]))
+    assert tables.comparison.gap_percent(run) == pytest.approx(100.0)
+    text = page.markdown(tables)
+    assert "Gaps are to best known plans from a file, not from these runs; for" in text
+    assert "Gaps are to the best plan that any of these runs has for a farm." in page.markdown(report.tables)
 
 
 def _with_farm_budget(report: Report, farm_budget_s: float) -> Measurements:

@@ -86,6 +86,9 @@ class BestKnown:
         return self._by_farm.get((digest, 0), {}), self._by_farm.get((set_name, index), {})
 
 
+NO_BEST_KNOWN = BestKnown(())
+
+
 def read_best_known(path: Path) -> BestKnown:
     """Read a file of best plans in either format.
 

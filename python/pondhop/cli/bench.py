@@ -8,7 +8,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
@@ -192,6 +192,7 @@ def paper(
     planner: Annotated[
         list[str] | None, typer.Option(metavar="MODULE:FUNCTION", help="A planner of your own to compare, too.")
     ] = None,
+    best_known: BestKnownFile = None,
     jobs: Annotated[int, typer.Option(min=1, help="Runs at once; more than idle cores falsifies the times.")] = 1,
     as_json: Json = False,
 ) -> None:
@@ -199,6 +200,7 @@ def paper(
 
     - `pondhop bench paper -o report`
     - `pondhop bench paper -o report --budget 60 --jobs 2`
+    - `pondhop bench paper -o report --best-known best.json`
     - `pondhop bench paper -o report --quick --planner my_module:my_planner`
 
     Writes report.html, which needs no other file, report.md, and the data as CSV files. Baselines that are not
@@ -214,7 +216,10 @@ def paper(
     scope = scopes.QUICK if quick else scopes.FULL
     if budget is not None:
         scope = scope.with_budget(budget)
+    if best_known is not None:
+        scope = replace(scope, options=f"{scope.options} --best-known {best_known.name}")
     faults: list[Fault] = []
+    known = _best_known([best_known] if best_known is not None else [], faults)
     own = []
     with _collecting(faults):
         require_packages()
@@ -229,7 +234,7 @@ def paper(
         measurements, num_new = execute_study(
             study, output, num_jobs=jobs, advance=lambda seconds: advance(size=seconds)
         )
-    files = write_report(Tables(measurements), output)
+    files = write_report(Tables(measurements, known), output)
     if as_json:
         left = [asdict(method) for method in left_out]
         answer = {"num_new_runs": num_new, "left_out": left, "files": list(map(str, files))}

@@ -14,6 +14,9 @@ FARM_SEED = 1
 
 PLANNER_SEED = 1
 
+MOST_PONDS_FOR_LEAST = 200
+"""Of sets of which slow planners get more than one farm, too: a comparison on one farm says nothing."""
+
 MAX_LIMIT_SHARE = 0.5
 """Of a budget for a set of farms: the longest time limit for quality against time."""
 
@@ -31,7 +34,10 @@ class Scope:
     farm_budget_s
         A planner that is expected to take longer for a farm is too slow for farms of this size: it plans none.
     set_budget_s
-        A planner that is expected to take longer for a set plans its first farms only, as many as fit, at least one.
+        A planner that is expected to take longer for a set plans its first farms only, as many as fit, at least
+        ``least_num_farms`` where they have at most ``MOST_PONDS_FOR_LEAST`` ponds, else at least one.
+    least_num_farms
+        See ``set_budget_s``.
     anytime_num_ponds, anytime_num_farms, anytime_limits_s
         Sets, first farms of each, and time limits for quality against time.
     scaling_num_ponds, scaling_num_farms
@@ -53,6 +59,7 @@ class Scope:
     scaling_num_ponds: tuple[int, ...]
     scaling_num_farms: int
     num_repeats: int
+    least_num_farms: int = 1
     figure_farm: int = 2
     figure_num_ponds: tuple[int, int] = (300, 100)
 
@@ -71,7 +78,8 @@ class Scope:
 
     def num_farms_of(self, method: Method, num_ponds: int) -> int:
         """Return how many farms of a set of Table 1 a method plans: all, the first few, or none."""
-        return self._fitting(method, num_ponds, self.num_farms)
+        least = self.least_num_farms if num_ponds <= MOST_PONDS_FOR_LEAST else 1
+        return self._fitting(method, num_ponds, self.num_farms, least)
 
     def num_scaling_farms_of(self, method: Method, num_ponds: int) -> int:
         """Return how many farms of a larger set a method plans."""
@@ -81,11 +89,11 @@ class Scope:
         """Return the time limits that a planner gets: baselines start at a second, below it they have no plan."""
         return [limit_s for limit_s in self.anytime_limits_s if method.kind == "ours" or limit_s >= 1.0]
 
-    def _fitting(self, method: Method, num_ponds: int, num_farms: int) -> int:
+    def _fitting(self, method: Method, num_ponds: int, num_farms: int, least: int = 1) -> int:
         seconds = method.seconds(num_ponds)
         if num_ponds > method.most_ponds or seconds > self.farm_budget_s:
             return 0
-        return min(num_farms, max(1, int(self.set_budget_s / seconds))) if seconds else num_farms
+        return min(num_farms, max(least, int(self.set_budget_s / seconds))) if seconds else num_farms
 
 
 FULL = Scope(
@@ -100,6 +108,7 @@ FULL = Scope(
     scaling_num_ponds=(1000, 2000, 5000, 10_000),
     scaling_num_farms=3,
     num_repeats=3,
+    least_num_farms=10,
 )
 
 QUICK = Scope(

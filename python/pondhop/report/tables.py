@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from statistics import fmean, linear_regression
 
-from pondhop.bench.best_known import BestKnown
+from pondhop.bench.best_known import NO_BEST_KNOWN, BestKnown
 from pondhop.bench.measure import Request, Run
 from pondhop.bench.summary import SAME_LENGTH, Comparison
 from pondhop.report.methods import SEARCH, WITHIN_LIMITS_S, Method
@@ -203,12 +203,14 @@ class Tables:
     ----------
     measurements
         Every run of the study.
+    best_known
+        What gaps are measured from; of farms that it does not have, the best of the runs.
     """
 
-    def __init__(self, measurements: Measurements) -> None:
+    def __init__(self, measurements: Measurements, best_known: BestKnown = NO_BEST_KNOWN) -> None:
         self.measurements = measurements
         self.study = measurements.study
-        self._comparison = Comparison(measurements.all_runs, BestKnown(()))
+        self.comparison = Comparison(measurements.all_runs, best_known)
 
     @cached_property
     def scores(self) -> list[Score]:
@@ -268,7 +270,7 @@ class Tables:
         return self.measurements.runs(requests)
 
     def _gap(self, runs: Iterable[Run]) -> float | None:
-        gaps = [gap for gap in map(self._comparison.gap_percent, runs) if gap is not None]
+        gaps = [gap for gap in map(self.comparison.gap_percent, runs) if gap is not None]
         return fmean(gaps) if gaps else None
 
     def _score(self, method: Method, num_ponds: int, runs: Sequence[Run]) -> Score:

@@ -11,7 +11,7 @@ from typing import Literal
 
 from pondhop.report.methods import SEARCH, WITHIN_LIMITS_S, Method
 from pondhop.report.printed import COLUMNS, TABLE_1, TABLE_2, Column, Printed
-from pondhop.report.scope import NUM_ROUTES
+from pondhop.report.scope import MOST_PONDS_FOR_LEAST, NUM_ROUTES
 from pondhop.report.tables import Character, Margin, Score, Tables
 
 Quantity = Literal["total_length", "max_route_length", "seconds"]
@@ -78,6 +78,21 @@ class Wording:
             if count < scope.num_farms
         ]
         return f"`{method.label}`: {'; '.join(parts)}" if parts else ""
+
+    def least_num_farms(self) -> str:
+        """Return how many farms a slow planner gets at least."""
+        least = self._scope.least_num_farms
+        return "one" if least == 1 else f"{least} with up to {MOST_PONDS_FOR_LEAST} ponds and one with more"
+
+    def best_known(self) -> str:
+        """Return what the gaps are measured from."""
+        comparison = self._tables.comparison
+        of_runs = "to the best plan that any of these runs has for a farm"
+        if not comparison.num_listed:
+            return of_runs
+        listed = "to best known plans from a file, not from these runs"
+        num_left = comparison.num_farms - comparison.num_listed
+        return f"{listed}; for {num_left} farms that it does not name, {of_runs}" if num_left else listed
 
     # Tables
 
