@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from pondhop.errors import Fault
 from pondhop.farm import shapes
 from pondhop.farm.coordinates import MAX_LATITUDE_DEG, exchanged
-from pondhop.farm.features import Feature, Positions, Source, listed, number_of, shortened
+from pondhop.farm.features import Feature, Source, listed, number_of, shortened
 from pondhop.farm.neighbourhoods import MAX_GAP_M
 from pondhop.farm.roles import ROLE_COLUMNS, Sorted
 from pondhop.farm.words import Meaning, meanings
-from pondhop.places import Area, LonLat, distance_m, unrolled_longitude, wrapped_longitude
+from pondhop.places import Area, LonLat, distance_m, wrapped_longitude
 
 MAX_SAMPLING_OFFSET_M = 1_000.0
 """A sampling point further outside its pond than this is a typing error, not a shore."""
@@ -25,9 +24,6 @@ DWARFED_SHARE = 0.05
 
 SLIVER_SHARE, SLIVER_M2 = 0.001, 10.0
 """A part below both is an error of drawing."""
-
-CLOSING_SHARE = 0.05
-"""A walk that ends within this share of its length from its start went around something."""
 
 
 @dataclass
@@ -69,7 +65,7 @@ def read_ponds(told: Sorted, source: Source) -> list[Draft]:
     order = {id(feature): index for index, feature in enumerate(told.ponds)}
     for feature in told.ponds:
         geometry = feature.geometry
-        if geometry.polygons or any(_closed_line(line) for line in geometry.lines):
+        if geometry.polygons or any(shapes.closed_line(line) for line in geometry.lines):
             outlines[order[id(feature)]] = _from_outlines(feature, source)
         elif geometry.lines:
             open_lines.append(feature)
@@ -186,7 +182,7 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
     """
     polygons = [*feature.geometry.polygons]
     for line in feature.geometry.lines:
-        closed = _closed_line(line)
+        closed = shapes.closed_line(line)
         if closed is None:
             action = "draw it as a polygon, or close the line"
             source.faults.append(Fault(feature.place, f"an open line is not {what}", action))
@@ -217,22 +213,6 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
     else:
         source.faults.extend(faults)
     return valid
-
-
-def _closed_line(line: Positions) -> Positions | None:
-    """The ring of a line that goes around something: it ends where it began, or nearly so."""
-    if len(line) <= 3:
-        return None
-    if line[0] == line[-1]:
-        return line
-    lons = [unrolled_longitude(lon, line[0][0]) for lon, _ in line]
-    shrink = math.cos(math.radians(line[0][1]))
-    steps = [
-        math.hypot((lons[index + 1] - lons[index]) * shrink, line[index + 1][1] - line[index][1])
-        for index in range(len(line) - 1)
-    ]
-    gap = math.hypot((lons[-1] - lons[0]) * shrink, line[-1][1] - line[0][1])
-    return [*line, line[0]] if gap <= CLOSING_SHARE * sum(steps) else None
 
 
 def _tell_open_lines(lines: list[Feature], told: Sorted, source: Source, *, has_ponds: bool) -> None:

@@ -22,7 +22,7 @@ from pondhop.farm.names import adopt_names, name_ponds
 from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
-from pondhop.farm.roles import Sorted, sort_by_role
+from pondhop.farm.roles import Sorted, no_pond_fault, sort_by_role
 from pondhop.places import Area, LonLat
 
 ACCEPT_ALL = "all"
@@ -78,8 +78,7 @@ def read_farm(
         told = _sorted(source)
         drafts = read_ponds(told, source)
         if not drafts and features and not source.faults:
-            fault = Fault("file", "there is no pond in this file", "add the ponds as polygons or points")
-            source.faults.append(fault)
+            source.faults.append(no_pond_fault(told))
         name_ponds(drafts, source)
         found_depot = depot_of(told, depot, source)
         stations = [point for feature in told.stations if (point := point_of(feature, "station", source)) is not None]
@@ -99,7 +98,8 @@ def read_farm(
         raise InvalidInput(told_faults(source.faults, features))
     if stations:
         are = "station is" if len(stations) == 1 else "stations are"
-        source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet.")
+        names = listed(feature.told() for feature in told.stations)
+        source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet: {names}.")
     ids = [draft.id for draft in drafts]
     return Farm(
         clean_text(source.name) or "farm",

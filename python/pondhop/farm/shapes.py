@@ -28,6 +28,9 @@ MIN_AREA_M2 = 0.01
 MIN_CLEARANCE_SHARE = 0.5
 """A centroid nearer to the bank than this share of the best place is near the bank."""
 
+CLOSING_SHARE = 0.05
+"""A walk that ends within this share of its length from its start went around something."""
+
 MIN_MENDED_SHARE = 0.98
 """Of the area of an outline that crosses itself must be in one piece for the rest to be cut off."""
 
@@ -36,6 +39,22 @@ def close_ring(positions: Positions) -> Ring:
     """The ring, closed if it is not."""
     ring = tuple(positions)
     return ring if len(ring) > 1 and ring[0] == ring[-1] else (*ring, *ring[:1])
+
+
+def closed_line(line: Positions) -> Positions | None:
+    """The ring of a line that goes around something: it ends where it began, or nearly so."""
+    if len(line) <= 3:
+        return None
+    if line[0] == line[-1]:
+        return line
+    lons = [unrolled_longitude(lon, line[0][0]) for lon, _ in line]
+    shrink = math.cos(math.radians(line[0][1]))
+    steps = [
+        math.hypot((lons[index + 1] - lons[index]) * shrink, line[index + 1][1] - line[index][1])
+        for index in range(len(line) - 1)
+    ]
+    gap = math.hypot((lons[-1] - lons[0]) * shrink, line[-1][1] - line[0][1])
+    return [*line, line[0]] if gap <= CLOSING_SHARE * sum(steps) else None
 
 
 @lru_cache(maxsize=8)

@@ -1,0 +1,121 @@
+"""What strangers' farm files brought up, each kind with a few files of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from farm_files import DEPOT, faults_of, geojson, ids, kml, placemark, polygon, ponds, shape, table
+from pondhop.farm import Farm, read_farm
+
+
+def points(folder: Path, *names: str, heading: str = "name") -> Path:
+    """A table with a point a line."""
+    lines = (f"{name},{10.1 + 0.001 * row:.4f},105.7" for row, name in enumerate(names))
+    return table(folder, "\n".join((f"{heading},lat,lon", *lines)))
+
+
+def told(farm: Farm, words: str) -> bool:
+    return any(words in note for note in farm.notes)
+
+
+# ------------------------------------------------------------------------------- stations that are sampling points
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        [f"Station {number}" for number in range(1, 9)],
+        ["Waypoint 1", "Waypoint 2", "Waypoint 3"],
+        ["WP 1", "WP 2", "WP 3"],
+        ["Dock 1", "Dock 2"],
+        ["Sampling station 3", "Sampling station 4"],
+        ["Station A", "Station B", "Station C"],
+        ["Station North", "Station South"],
+        ["Estación 1", "Estación 2"],
+        ["Trạm 1", "Trạm 2"],
+        ["Stasiun 01", "Stasiun 02"],
+        ["STATION_7", "STATION_8", "STATION_9"],
+    ],
+)
+def test_numbered_points_of_one_word_are_the_ponds_where_nothing_else_is(tmp_path: Path, names: list[str]) -> None:
+    assert ids(read_farm(points(tmp_path, *names), depot=DEPOT)) == names
+    with_others = read_farm(points(tmp_path, *names, "Office", "Depot", "Weather station"))
+    assert ids(with_others) == names
+    waypoints = "".join(
+        f'<wpt lat="10.{n + 100}" lon="105.7"><name>{name}</name></wpt>' for n, name in enumerate(names)
+    )
+    (tmp_path / "farm.gpx").write_text(f"<gpx>{waypoints}</gpx>", "utf-8")
+    assert ids(read_farm(tmp_path / "farm.gpx", depot=DEPOT)) == names
+
+
+def test_a_note_says_that_stations_are_taken_as_ponds(tmp_path: Path) -> None:
+    farm = read_farm(points(tmp_path, "Station 1", "Station 2", "Station 3"), depot=DEPOT)
+    [note] = farm.notes
+    assert note.startswith(
+        "3 points with the word 'station' are taken as ponds, because no other feature is one: 'Stat"
+    )
+    assert farm.stations == ()
+
+
+def test_stations_of_drones_stay_what_they_are(tmp_path: Path) -> None:
+    docks = [shape("Point", [105.71, 10.11 + 0.001 * n], name=f"Dock {n}") for n in range(1, 4)]
+    farm = read_farm(geojson(tmp_path, *ponds(), *docks), depot=DEPOT)
+    assert (len(farm.ponds), len(farm.stations)) == (3, 3)
+    assert told(farm, "3 stations are in the file; plans do not use stations yet: 'Dock 1' (features[3])")
+    codes = read_farm(points(tmp_path, "A1", "A2", "A3", "Dock 1", "Dock 2"), depot=DEPOT)
+    assert (ids(codes), len(codes.stations)) == (["A1", "A2", "A3"], 2)
+    lone = read_farm(points(tmp_path, "Station 1", "Station 2", "Station 3", "Dock"), depot=DEPOT)
+    assert (len(lone.ponds), len(lone.stations)) == (3, 1)
+
+
+@pytest.mark.parametrize(
+    ("names", "what", "word"),
+    [
+        (["Charging station 1", "Charging station 2"], "a station of the drones", "charging station"),
+        (["Weather station 1", "Weather station 2"], "something beside ponds", "weather station"),
+        (["Gate 1", "Gate 2", "Gate 3"], "something beside ponds", "gate"),
+        (["Station 1"], "a station of the drones", "station"),
+    ],
+)
+def test_a_file_without_a_pond_says_what_each_thing_was_taken_for(
+    tmp_path: Path, names: list[str], what: str, word: str
+) -> None:
+    [(place, message, action)] = faults_of(points(tmp_path, *names), depot=DEPOT)
+    assert place == "file"
+    are = "1 feature" if len(names) == 1 else f"{len(names)} features"
+    assert message.startswith(f"there is no pond in this file: {are} taken for {what} by the word {word!r}: ")
+    assert all(repr(name) in message for name in names)
+    assert "the role pond" in action
+
+
+def test_a_file_without_a_pond_tells_ids_and_roles(tmp_path: Path) -> None:
+    things = [
+        polygon(0, 0, id="7", name="Office"),
+        shape("Point", [105.7, 10.1], role="station", name="S"),
+        shape("Point", [105.7, 10.1], name="Depot"),
+    ]
+    [(_, message, _)] = faults_of(geojson(tmp_path, *things))
+    assert "1 feature taken for something beside ponds by the word 'office': 'Office' (id 7, features[0])" in message
+    assert "1 feature taken for a station of the drones by its role: 'S' (features[1])" in message
+    assert "1 feature taken for the depot by the word 'depot': 'Depot' (features[2])" in message
+
+
+def test_folders_and_kinds_called_stations_hold_ponds_where_nothing_else_is(tmp_path: Path) -> None:
+    inside = "".join(
+        placemark(f"{n}", f"<Point><coordinates>105.7,10.10{n}</coordinates></Point>") for n in range(1, 5)
+    )
+    other = placemark("Depot", "<Point><coordinates>105.6985,10.0995</coordinates></Point>")
+    for name in ("Stations", "station_samples", "Waypoints"):
+        path = kml(tmp_path, f"<Folder><name>{name}</name>{inside}</Folder>", f"<Folder>{other}</Folder>")
+        assert ids(read_farm(path)) == ["1", "2", "3", "4"]
+    kinds = "name,type,lat,lon\n" + "".join(f"S{n},station,10.10{n},105.7\n" for n in range(1, 5))
+    assert ids(read_farm(table(tmp_path, kinds), depot=DEPOT)) == ["S1", "S2", "S3", "S4"]
+    explicit = kinds.replace("type", "role")
+    assert "a station of the drones by its role" in faults_of(table(tmp_path, explicit), depot=DEPOT)[0][1]
+
+
+def test_a_station_with_what_only_ponds_have_is_a_pond(tmp_path: Path) -> None:
+    text = "name,service_s,lat,lon\nPond 1,,10.1,105.7\nStation 2,40,10.101,105.7\n"
+    assert ids(read_farm(table(tmp_path, text), depot=DEPOT)) == ["Pond 1", "Station 2"]
