@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from math import cos, radians
 from pathlib import Path
 
 import pytest
 
 from farm_files import DEPOT, faults_of, geojson, ids, kml, placemark, polygon, ponds, shape, table
 from pondhop.farm import Farm, read_farm
+from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m
 
 
 def points(folder: Path, *names: str, heading: str = "name") -> Path:
@@ -119,3 +121,57 @@ def test_folders_and_kinds_called_stations_hold_ponds_where_nothing_else_is(tmp_
 def test_a_station_with_what_only_ponds_have_is_a_pond(tmp_path: Path) -> None:
     text = "name,service_s,lat,lon\nPond 1,,10.1,105.7\nStation 2,40,10.101,105.7\n"
     assert ids(read_farm(table(tmp_path, text), depot=DEPOT)) == ["Pond 1", "Station 2"]
+
+
+# ------------------------------------------------------------------------------------------- cut at the 180th meridian
+
+
+def box(west: float, south: float, east: float, north: float) -> list[list[float]]:
+    return [[west, south], [east, south], [east, north], [west, north], [west, south]]
+
+
+@pytest.mark.parametrize("edge", [180.0, 179.999995])
+def test_a_pond_cut_at_the_180th_meridian_is_one(tmp_path: Path, edge: float) -> None:
+    parts = [[box(179.999, -17.001, edge, -17.0)], [box(-edge, -17.001, -179.9995, -17.0)]]
+    farm = read_farm(geojson(tmp_path, shape("MultiPolygon", parts, name="A")), depot=(179.998, -17.0))
+    [pond] = farm.ponds
+    assert pond.id == "A"
+    assert pond.sampling_point == pytest.approx((179.99975, -17.0005), abs=1e-6)
+    assert area_m2(pond.outline) == pytest.approx(1.5e-3 * 1e-3 * METRES_PER_DEGREE**2 * cos(radians(17.0)), rel=0.01)
+    assert told(farm, "'A' (features[0]): 2 parts that meet on the 180th meridian were put together")
+
+
+def test_an_island_cut_at_the_meridian_is_whole_again(tmp_path: Path) -> None:
+    west = [[179.999, -17.001], [180, -17.001], [180, -17.0007], [179.9998, -17.0007], [179.9998, -17.0003]]
+    west += [[180, -17.0003], [180, -17], [179.999, -17], [179.999, -17.001]]
+    east = [[-lon, lat] for lon, lat in west]
+    farm = read_farm(geojson(tmp_path, shape("MultiPolygon", [[west], [east]], name="A")), depot=(179.998, -17.0))
+    [pond] = farm.ponds
+    assert [len(set(ring)) for ring in pond.outline] == [6, 6]
+    assert clearance_m((180.0, -17.0005), pond.outline) < 0.0
+
+
+def test_ponds_that_only_lie_near_the_meridian_stay_apart(tmp_path: Path) -> None:
+    apart = [[box(179.999, -17.001, 180, -17.0)], [box(-180, -16.999, -179.999, -16.998)]]
+    near = [[box(179.999, -17.001, 179.9999, -17.0)], [box(-179.9999, -17.001, -179.999, -17.0)]]
+    touching = [[box(105.7, 10.1, 105.701, 10.101)], [box(105.701, 10.1, 105.702, 10.101)]]
+    for parts, depot in ((apart, (179.998, -17.0)), (near, (179.998, -17.0)), (touching, DEPOT)):
+        assert len(read_farm(geojson(tmp_path, shape("MultiPolygon", parts, name="A")), depot=depot).ponds) == 2
+    three = [*apart, [box(-180, -17.001, -179.9995, -17.0)]]
+    assert ids(read_farm(geojson(tmp_path, shape("MultiPolygon", three, name="A")), depot=(179.998, -17.0))) == [
+        "A 1",
+        "A 2",
+    ]
+
+
+def test_areas_and_lines_cut_at_the_meridian_are_one(tmp_path: Path) -> None:
+    pond = shape("Point", [-179.9998, -17.0005], id="P")
+    fence = [[box(179.99, -17.01, 180, -16.99)], [box(-180, -17.01, -179.99, -16.99)]]
+    zone = [[box(179.995, -17.001, 180, -17.0)], [box(-180, -17.001, -179.9999, -17.0)]]
+    walk = [[[180, -17.002], [179.999, -17.002], [179.999, -17.003], [180, -17.003]]]
+    walk += [[[-180, -17.002], [-179.999, -17.002], [-179.999, -17.003], [-180, -17.003]]]
+    areas = [shape("MultiPolygon", fence, role="fence"), shape("MultiPolygon", zone, role="no_fly")]
+    path = geojson(tmp_path, pond, *areas, shape("MultiLineString", walk, name="Pond W"))
+    farm = read_farm(path, depot=(179.998, -17.003))
+    assert (ids(farm), len(farm.fences), len(farm.no_fly)) == (["P", "Pond W"], 1, 1)
+    assert farm.ponds[1].sampling_point == pytest.approx((180.0, -17.0025))

@@ -17,6 +17,7 @@ from pondhop.farm.distances import ponds_of_one_farm
 from pondhop.farm.faults import told_faults
 from pondhop.farm.features import Feature, Source, clean_text, listed, shortened
 from pondhop.farm.formats import read_source
+from pondhop.farm.meridian import join_at_meridian
 from pondhop.farm.model import Doubt, Farm, Pond
 from pondhop.farm.names import adopt_names, name_ponds
 from pondhop.farm.odd_names import odd_names
@@ -141,7 +142,9 @@ def _sorted(source: Source) -> Sorted:
         has_depot_feature = sort_by_role(source.features, Source(source.name)).has_depot_feature
         return Sorted(has_depot_feature=has_depot_feature)
     misplaced_places = {fault.path for fault in misplaced}
-    return sort_by_role((feature for feature in source.features if feature.place not in misplaced_places), source)
+    placed = [feature for feature in source.features if feature.place not in misplaced_places]
+    join_at_meridian(placed, source.notes)
+    return sort_by_role(placed, source)
 
 
 def _areas(told: Sorted, drafts: Sequence[Draft], source: Source) -> tuple[list[Area], list[Area]]:
