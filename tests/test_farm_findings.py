@@ -175,3 +175,34 @@ def test_areas_and_lines_cut_at_the_meridian_are_one(tmp_path: Path) -> None:
     farm = read_farm(path, depot=(179.998, -17.003))
     assert (ids(farm), len(farm.fences), len(farm.no_fly)) == (["P", "Pond W"], 1, 1)
     assert farm.ponds[1].sampling_point == pytest.approx((180.0, -17.0025))
+
+
+# ------------------------------------------------------------------------------------------------- holes of areas
+
+
+def around(lon: float, lat: float, half_width: float) -> list[list[float]]:
+    return box(lon - half_width, lat - half_width, lon + half_width, lat + half_width)
+
+
+def test_what_becomes_of_the_holes_of_areas_is_noted(tmp_path: Path) -> None:
+    away = [around(105.73, 10.1, 0.01), around(105.725, 10.1, 0.001), around(105.735, 10.1, 0.001)]
+    fence = [around(105.7, 10.1, 0.05), around(105.67, 10.1, 0.001)]
+    areas = [shape("Polygon", away, name="No fly"), shape("Polygon", fence, name="Geofence")]
+    farm = read_farm(geojson(tmp_path, *ponds(), *areas), depot=DEPOT)
+    assert told(farm, "'No fly' (features[3]): its 2 holes are kept out of too, because autopilots store no-fly zones")
+    assert told(farm, "'Geofence' (features[4]): its hole is kept out of, as a no-fly zone.")
+    assert [len(area) for area in farm.kept_out] == [1, 1]
+
+
+def test_a_farm_in_the_hole_of_a_zone_may_be_flown(tmp_path: Path) -> None:
+    ring = [around(105.7, 10.1, 0.1), around(105.7, 10.1, 0.02)]
+    farm = read_farm(geojson(tmp_path, *ponds(), shape("Polygon", ring, name="No fly")), depot=DEPOT)
+    assert (len(farm.ponds), len(farm.no_fly)) == (3, 1)
+    assert told(farm, "the depot lies in a hole of it, and drones stay inside that hole")
+    assert [len(area) for area in farm.kept_out] == [2]
+
+
+def test_ponds_in_the_hole_of_a_fence_are_outside_of_it(tmp_path: Path) -> None:
+    ring = [around(105.7, 10.1, 0.1), around(105.7, 10.1, 0.02)]
+    path = geojson(tmp_path, *ponds(), shape("Polygon", ring, name="Geofence"))
+    assert "but 0% of the ponds lie in it" in faults_of(path, depot=DEPOT)[0][1]

@@ -83,7 +83,7 @@ def read_farm(
         name_ponds(drafts, source)
         found_depot = depot_of(told, depot, source)
         stations = [point for feature in told.stations if (point := point_of(feature, "station", source)) is not None]
-        no_fly, fences = _areas(told, drafts, source)
+        no_fly, fences = _areas(told, drafts, found_depot, source)
         doubts = [*_doubts(drafts, source), *_told_odd(drafts, told, source)]
         drafts = ponds_of_one_farm(
             drafts,
@@ -147,7 +147,9 @@ def _sorted(source: Source) -> Sorted:
     return sort_by_role(placed, source)
 
 
-def _areas(told: Sorted, drafts: Sequence[Draft], source: Source) -> tuple[list[Area], list[Area]]:
+def _areas(
+    told: Sorted, drafts: Sequence[Draft], depot: LonLat | None, source: Source
+) -> tuple[list[Area], list[Area]]:
     """No-fly areas and fences; those told by name alone must make sense: ponds outside of the one, inside the other."""
     points = [draft.sampling_point for draft in drafts]
     areas: dict[str, list[Area]] = {"no_fly": [], "fence": []}
@@ -155,11 +157,28 @@ def _areas(told: Sorted, drafts: Sequence[Draft], source: Source) -> tuple[list[
         for feature in features:
             found = areas_of(feature, f"a {role} area", source)
             if feature.place in told.guessed and points and found:
-                inside = len({index for index, _ in shapes.places_within(points, found)}) / len(points)
+                inside = len({index for index, _ in shapes.places_inside(points, found)}) / len(points)
                 if inside > 0.5 if role == "no_fly" else inside < MIN_FENCED_SHARE:
                     _tell_misnamed(feature, role, inside, source)
             areas[role].extend(found)
+            for area in found:
+                _tell_holes(feature, role, area, depot, source)
     return areas["no_fly"], areas["fence"]
+
+
+def _tell_holes(feature: Feature, role: str, area: Area, depot: LonLat | None, source: Source) -> None:
+    """Note what becomes of the holes of an area, of which autopilots know nothing; see `Farm.kept_out`."""
+    num_holes = len(area) - 1
+    if not num_holes:
+        return
+    holes = "its hole is" if num_holes == 1 else f"its {num_holes} holes are"
+    if role == "fence":
+        told = f"{holes} kept out of, as {'a no-fly zone' if num_holes == 1 else 'no-fly zones'}"
+    elif depot is not None and any(shapes.clearance_m(depot, (hole,)) > 0.0 for hole in area[1:]):
+        told = "the depot lies in a hole of it, and drones stay inside that hole"
+    else:
+        told = f"{holes} kept out of too, because autopilots store no-fly zones without holes"
+    source.notes.add(f"{feature.told()}: {told}.", kind=f"holes of {role}")
 
 
 def _tell_misnamed(feature: Feature, role: str, inside: float, source: Source) -> None:

@@ -178,6 +178,12 @@ def extent_m(rings: Area) -> float:
     return math.hypot(east - west, north - south)
 
 
+def places_inside(points: Sequence[LonLat], areas: Sequence[Area]) -> list[tuple[int, int]]:
+    """Pairs (i, j): place i lies in area j, and in none of its holes. Ponds given as points have an empty outline."""
+    pairs = places_within(points, areas)
+    return [(i, j) for i, j in pairs if len(areas[j]) == 1 or clearance_m(points[i], areas[j]) > 0.0]
+
+
 def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tuple[int, int]]:
     """Pairs (i, j): place i lies in the outer ring of outline j. Ponds given as points have an empty outline."""
     import shapely
