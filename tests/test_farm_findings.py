@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from farm_files import DEPOT, faults_of, geojson, ids, kml, placemark, polygon, ponds, shape, table
+from farm_files import DEPOT, faults_of, geojson, ids, kml, placemark, polygon, ponds, shape, square, table
 from pondhop.farm import Farm, read_farm
 from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m
 
@@ -206,3 +206,59 @@ def test_ponds_in_the_hole_of_a_fence_are_outside_of_it(tmp_path: Path) -> None:
     ring = [around(105.7, 10.1, 0.1), around(105.7, 10.1, 0.02)]
     path = geojson(tmp_path, *ponds(), shape("Polygon", ring, name="Geofence"))
     assert "but 0% of the ponds lie in it" in faults_of(path, depot=DEPOT)[0][1]
+
+
+# ------------------------------------------------------------------------------------------ ponds in and upon others
+
+
+def pond_of(*rings: list[list[float]], **properties: object) -> dict[str, object]:
+    return shape("Polygon", rings, **properties)
+
+
+def test_a_pond_on_an_island_of_another_is_in_no_doubt(tmp_path: Path) -> None:
+    outer = pond_of(around(105.7, 10.1, 0.002), around(105.7, 10.1, 0.001), name="Pond 1")
+    for inner in (
+        [pond_of(around(105.7, 10.1, 0.0005), name="Pond 2")],
+        [pond_of(around(105.7, 10.1, 0.001), name="Pond 2")],
+        [pond_of(around(105.7 + dx, 10.1, 0.0002), name=f"Pond {n}") for n, dx in ((2, -0.0005), (3, 0), (4, 0.0005))],
+        [shape("Point", [105.7, 10.1], name="Pond 2")],
+    ):
+        farm = read_farm(geojson(tmp_path, outer, *inner), depot=(105.69, 10.0995))
+        assert (len(farm.ponds), farm.doubts, farm.notes) == (1 + len(inner), (), ())
+
+
+def test_a_pond_in_the_water_of_another_is_a_doubt(tmp_path: Path) -> None:
+    for outer in (
+        pond_of(around(105.7, 10.1, 0.002), name="Pond 1"),
+        pond_of(around(105.7, 10.1, 0.002), around(105.7015, 10.1, 0.0001), name="Pond 1"),
+    ):
+        inner = pond_of(around(105.7005, 10.1005, 0.0003), name="Pond 2")
+        [doubt] = read_farm(geojson(tmp_path, outer, inner), depot=(105.69, 10.0995)).doubts
+        assert doubt.pond_id == "Pond 2"
+        assert "the sampling point of pond Pond 2 lies in pond Pond 1" in doubt.message
+
+
+def test_land_with_its_ponds_cut_out_is_no_pond(tmp_path: Path) -> None:
+    holes = [square(0, 0), square(1, 0), square(2, 0)]
+    land = pond_of(around(105.703, 10.1, 0.01), *holes, name="Crique")
+    [(place, message, _)] = faults_of(geojson(tmp_path, *ponds(), land), depot=DEPOT)
+    assert (place, "lies around 3 other ponds" in message) == ("features[3]", True)
+
+
+def test_a_label_on_an_island_is_no_pond_and_no_place_to_sample(tmp_path: Path) -> None:
+    outer = pond_of(around(105.7, 10.1, 0.002), around(105.7, 10.1, 0.001), name="Pond 1")
+    for name in ("Pond 1", "Sampling point"):
+        farm = read_farm(geojson(tmp_path, outer, shape("Point", [105.7, 10.1], name=name)), depot=DEPOT)
+        assert ids(farm) == ["Pond 1"]
+        assert clearance_m(farm.ponds[0].sampling_point, farm.ponds[0].outline) > 0.0
+        assert told(farm, "are labels")
+
+
+@pytest.mark.parametrize("lon", ["105.7", "105.700004"])
+def test_two_points_at_one_place_are_a_doubt_that_names_both(tmp_path: Path, lon: str) -> None:
+    text = f"pond,lat,lon\nA,10.1,105.7\nB,10.101,105.7\nC,10.1,{lon}\nD,10.1,105.70003\n"
+    farm = read_farm(table(tmp_path, text), depot=DEPOT)
+    [doubt] = farm.doubts
+    assert (doubt.pond_id, doubt.message) == ("C", "line 4: pond C lies where pond A lies (line 2)")
+    assert told(farm, "line 4: pond C lies where pond A lies (line 2); correct one of the two.")
+    assert read_farm(table(tmp_path, text), depot=DEPOT, accept=["C"]).doubts == ()

@@ -11,7 +11,7 @@ import numpy as np
 from pondhop._core import LocalFrame, Problem
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
-from pondhop.farm.shapes import clearance_m
+from pondhop.farm.shapes import hole_around
 from pondhop.fleet import Fleet
 from pondhop.places import Area, LonLat
 
@@ -94,9 +94,9 @@ class Farm:
         unless the depot lies in that hole, the only one that an area then has: drones stay inside of it.
         """
         zones = []
-        for outer, *holes in self.no_fly:
-            home = next((hole for hole in holes if clearance_m(self.depot, (hole,)) > 0.0), None)
-            zones.append((outer,) if home is None else (outer, home))
+        for area in self.no_fly:
+            home = hole_around(self.depot, area)
+            zones.append(area[:1] if home is None else (area[0], home))
         return (*zones, *((hole,) for _, *holes in self.fences for hole in holes))
 
     def to_problem(self, fleet: Fleet, *, are_layers_stacked: bool = False) -> Problem:

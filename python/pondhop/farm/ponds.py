@@ -22,6 +22,9 @@ MAX_SERVICE_S = 86_400.0
 DWARFED_SHARE = 0.05
 """A part of a pond below this share of the largest is a corner of it, not a pond of its own."""
 
+FILLED_SHARE = 0.8
+"""A pond that takes more of a hole than this share is what the hole was cut out for."""
+
 SLIVER_SHARE, SLIVER_M2 = 0.001, 10.0
 """A part below both is an error of drawing."""
 
@@ -232,24 +235,32 @@ def _tell_open_lines(lines: list[Feature], told: Sorted, source: Source, *, has_
 def _without_surrounding(drafts: list[Draft], pins: list[Feature], source: Source) -> list[Draft]:
     """The ponds without outlines drawn around several others, which are farms or blocks: a fault each.
 
-    A property ``role`` says that one is a pond all the same. Single ponds within ponds stay: islands have ponds.
+    A property ``role`` says that one is a pond all the same. Single ponds within ponds stay, and so do ponds in holes:
+    islands have ponds. Only where several holes are cut out for one pond each, the land around them was drawn.
     """
     outlines = [draft.outline for draft in drafts]
     points = [draft.sampling_point for draft in drafts]
     within: dict[int, int] = {}
     sizes_m2 = [draft.area_m2 for draft in drafts]
+    cut_out: dict[int, int] = {}
     for inner, outer in shapes.places_within(points, outlines):
-        if inner != outer and sizes_m2[inner] < sizes_m2[outer]:
+        if inner == outer:
+            continue
+        hole = shapes.hole_around(points[inner], outlines[outer])
+        if hole is not None:
+            is_filled = sizes_m2[inner] > FILLED_SHARE * shapes.area_m2((hole,))
+            cut_out[outer] = cut_out.get(outer, 0) + is_filled
+        elif sizes_m2[inner] < sizes_m2[outer]:
             within[outer] = within.get(outer, 0) + 1
     pin_points = [point for pin in pins if len(pin.geometry.points) == 1 for point in pin.geometry.points]
     pins_in: dict[int, int] = {}
-    for _, outer in shapes.places_within(pin_points, outlines):
+    for _, outer in shapes.places_inside(pin_points, outlines):
         pins_in[outer] = pins_in.get(outer, 0) + 1
     surrounding: set[int] = set()
     for index, draft in enumerate(drafts):
         if draft.feature.find(*ROLE_COLUMNS):
             continue
-        num_ponds, num_pins = within.get(index, 0), pins_in.get(index, 0)
+        num_ponds, num_pins = max(within.get(index, 0), cut_out.get(index, 0)), pins_in.get(index, 0)
         if num_ponds >= 2 or (num_pins >= 3 and 2 * num_pins > len(pin_points)):
             surrounding.add(index)
             held = f"{num_ponds} other ponds" if num_ponds >= 2 else f"{num_pins} points"
@@ -275,7 +286,7 @@ def _from_points(
     for index, feature in points.items():
         is_explicit = feature.find(*ROLE_COLUMNS) is not None
         owner = owners.get(index)
-        if owner is not None and not is_explicit:
+        if owner is not None and not is_explicit and not _is_on_island(feature, owner, told):
             _use_pin(feature, owner, labels, source)
         elif outlines and not is_explicit and feature.place not in told.sure:
             if Meaning.SAMPLING in meanings(feature.name):
@@ -301,11 +312,19 @@ def _from_points(
     return made
 
 
+def _is_on_island(feature: Feature, owner: Draft, told: Sorted) -> bool:
+    """Whether a point in the hole of a pond is a pond of its own: called so, and not as the pond around it is."""
+    if feature.place not in told.sure or feature.name == owner.feature.name:
+        return False
+    return shapes.hole_around(feature.geometry.points[0], owner.outline) is not None
+
+
 def _use_pin(feature: Feature, owner: Draft, labels: list[Feature], source: Source) -> None:
     """A point in a pond: where it is sampled if its name says so, else a label."""
     point = feature.geometry.points[0]
     is_sampling_point = Meaning.SAMPLING in meanings(feature.name) and owner.feature.find("sampling_point") is None
-    if is_sampling_point and not owner.part:
+    is_in_water = shapes.hole_around(point, owner.outline) is None
+    if is_sampling_point and is_in_water and not owner.part:
         owner.sampling_point = point
         source.notes.add(f"{feature.told()} is where {owner.feature.told()} is sampled.", kind="sampling points")
     else:

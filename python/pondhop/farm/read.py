@@ -35,6 +35,9 @@ MIN_WIDTH_M = 2.0
 MAX_NARROW_M = 10.0
 """An outline whose area is larger than its diagonal times this has room enough, and is not measured."""
 
+SAME_PLACE_M = 1.0
+"""Two ponds have room for nothing if their points lie nearer than this."""
+
 MIN_FENCED_SHARE = 0.9
 """Of the ponds must lie in an area for it to be taken as a fence by its name alone."""
 
@@ -174,7 +177,7 @@ def _tell_holes(feature: Feature, role: str, area: Area, depot: LonLat | None, s
     holes = "its hole is" if num_holes == 1 else f"its {num_holes} holes are"
     if role == "fence":
         told = f"{holes} kept out of, as {'a no-fly zone' if num_holes == 1 else 'no-fly zones'}"
-    elif depot is not None and any(shapes.clearance_m(depot, (hole,)) > 0.0 for hole in area[1:]):
+    elif depot is not None and shapes.hole_around(depot, area) is not None:
         told = "the depot lies in a hole of it, and drones stay inside that hole"
     else:
         told = f"{holes} kept out of too, because autopilots store no-fly zones without holes"
@@ -205,7 +208,7 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
             f"the furthest by {offset_m:.1f} m ({place})."
         )
     points, outlines = [draft.sampling_point for draft in drafts], [draft.outline for draft in drafts]
-    for inner, outer in shapes.places_within(points, outlines):
+    for inner, outer in shapes.places_inside(points, outlines):
         if inner == outer:
             continue
         told = f"the sampling point of pond {drafts[inner].id} lies in pond {drafts[outer].id}"
@@ -214,6 +217,19 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
             kind="ponds in ponds",
         )
         doubts.append(Doubt(drafts[inner].id, f"{drafts[inner].feature.place}: {told}"))
+    doubts.extend(_at_one_place(drafts, source))
+    return doubts
+
+
+def _at_one_place(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
+    """Ponds given as points that lie where another one does: of one of them the place is a copy."""
+    single = [draft for draft in drafts if not draft.outline]
+    doubts = []
+    for first, second in shapes.places_together([draft.sampling_point for draft in single], SAME_PLACE_M):
+        one, other = single[first], single[second]
+        told = f"pond {other.id} lies where pond {one.id} lies ({one.feature.place})"
+        source.notes.add(f"{other.feature.place}: {told}; correct one of the two.", kind="ponds at one place")
+        doubts.append(Doubt(other.id, f"{other.feature.place}: {told}"))
     return doubts
 
 

@@ -178,10 +178,15 @@ def extent_m(rings: Area) -> float:
     return math.hypot(east - west, north - south)
 
 
+def hole_around(point: LonLat, rings: Area) -> Ring | None:
+    """The hole of a polygon in which a place lies."""
+    return next((hole for hole in rings[1:] if clearance_m(point, (hole,)) > 0.0), None)
+
+
 def places_inside(points: Sequence[LonLat], areas: Sequence[Area]) -> list[tuple[int, int]]:
     """Pairs (i, j): place i lies in area j, and in none of its holes. Ponds given as points have an empty outline."""
     pairs = places_within(points, areas)
-    return [(i, j) for i, j in pairs if len(areas[j]) == 1 or clearance_m(points[i], areas[j]) > 0.0]
+    return [(i, j) for i, j in pairs if hole_around(points[i], areas[j]) is None]
 
 
 def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tuple[int, int]]:
@@ -198,3 +203,19 @@ def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tu
     tree = shapely.STRtree(np.asarray(shapely.polygons(rings)))
     inside, container = tree.query(shapely.points(_unrolled(tuple(points), near)), predicate="within")
     return sorted((int(i), has_outline[int(j)]) for i, j in zip(inside, container, strict=True))
+
+
+def places_together(points: Sequence[LonLat], within_m: float) -> list[tuple[int, int]]:
+    """Pairs (i, j): place j lies that near to place i, the first one to do so in their order."""
+    import shapely
+
+    if len(points) < 2:
+        return []
+    lonlats = _unrolled(tuple(points), points[0][0])
+    shrink = np.cos(np.radians(lonlats[:, 1]))
+    places = shapely.points(METRES_PER_DEGREE * np.column_stack([lonlats[:, 0] * shrink, lonlats[:, 1]]))
+    near = shapely.STRtree(np.asarray(places)).query(places, predicate="dwithin", distance=within_m)
+    first_of: dict[int, int] = {}
+    for place, other in near.T.tolist():
+        first_of[place] = min(other, first_of.get(place, place))
+    return sorted((first, place) for place, first in first_of.items() if first < place)
