@@ -361,7 +361,7 @@ def test_a_sampling_point_in_another_pond_is_noted(tmp_path: Path) -> None:
         DEPOT_FEATURE,
     )
     notes = read_farm(path).notes
-    assert any("1 sampling points lie outside" in note and "44." in note for note in notes)
+    assert any("1 sampling point lies outside" in note and "44." in note for note in notes)
     assert any("sampling point of pond a lies in pond b" in note for note in notes)
 
 

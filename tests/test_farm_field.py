@@ -400,7 +400,7 @@ def test_parts_of_one_size_are_ponds_and_crumbs_are_not(tmp_path: Path) -> None:
     parts = shape("MultiPolygon", [[square(0, 0)], [square(1, 0)], crumb], name="Block")
     farm = read_farm(geojson(tmp_path, parts), depot=DEPOT)
     assert ids(farm) == ["Block 1", "Block 2"]
-    assert "1 small parts were left out" in farm.notes[0]
+    assert "1 small part was left out" in farm.notes[0]
     points = shape("MultiPoint", [[105.7, 10.1], [105.71, 10.1]], name="B")
     assert ids(read_farm(geojson(tmp_path, points), depot=DEPOT)) == ["B 1", "B 2"]
 

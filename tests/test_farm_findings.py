@@ -262,3 +262,58 @@ def test_two_points_at_one_place_are_a_doubt_that_names_both(tmp_path: Path, lon
     assert (doubt.pond_id, doubt.message) == ("C", "line 4: pond C lies where pond A lies (line 2)")
     assert told(farm, "line 4: pond C lies where pond A lies (line 2); correct one of the two.")
     assert read_farm(table(tmp_path, text), depot=DEPOT, accept=["C"]).doubts == ()
+
+
+# --------------------------------------------------------------------------------------- what is left out by its kind
+
+
+def test_what_was_never_drawn_is_left_out_by_name_and_count(tmp_path: Path) -> None:
+    def feature(geometry: object, **properties: object) -> dict[str, object]:
+        return {"type": "Feature", "properties": properties, "geometry": geometry}
+
+    nothing = {"type": "GeometryCollection", "geometries": []}
+    one = read_farm(geojson(tmp_path, *ponds(), feature(nothing, name="Norte")), depot=DEPOT)
+    assert (ids(one), one.notes) == (
+        ["Pond 1", "Pond 2", "Pond 3"],
+        ("Left out, because nothing of it was drawn: 'Norte' (features[3]).",),
+    )
+    blank = [feature(nothing, name="Norte"), feature(None, name="Sur"), feature({"type": "Point", "coordinates": []})]
+    [note] = read_farm(geojson(tmp_path, *ponds(), *blank), depot=DEPOT).notes
+    names = "'Norte' (features[3]), 'Sur' (features[4]), features[5]"
+    assert note == f"Left out, because nothing of them was drawn: {names}: 3 features in all."
+    for named in ({"name": "Pond 9"}, {"id": 9}, {"pond_id": "9", "name": "Norte"}):
+        [(place, message, _)] = faults_of(geojson(tmp_path, *ponds(), feature(nothing, **named)), depot=DEPOT)
+        assert (place, "has no geometry" in message) == ("features[3]", True)
+
+
+def test_a_line_drawn_with_a_pond_is_left_out(tmp_path: Path) -> None:
+    ditch = {"type": "LineString", "coordinates": [[105.7, 10.2], [105.71, 10.21]]}
+    for own in ({"type": "Polygon", "coordinates": [square(5, 5)]}, {"type": "Point", "coordinates": [105.71, 10.1]}):
+        geometry = {"type": "GeometryCollection", "geometries": [own, ditch, ditch]}
+        thing = {"type": "Feature", "properties": {"name": "Pond 8"}, "geometry": geometry}
+        farm = read_farm(geojson(tmp_path, *ponds(), thing), depot=DEPOT)
+        assert ids(farm)[3:] == ["Pond 8"]
+        assert told(farm, "'Pond 8' (features[3]): 2 open lines drawn with it were left out.")
+
+
+def test_lines_and_things_beside_ponds_are_counted(tmp_path: Path) -> None:
+    lines = [shape("LineString", [[105.7, 10.2], [105.71, 10.21]], name=f"Row {n}") for n in range(7)]
+    offices = [polygon(5, n, name="Office") for n in range(2)]
+    first, second = read_farm(geojson(tmp_path, *ponds(), *lines, *offices), depot=DEPOT).notes
+    assert first.startswith("Left out, because they are no ponds by their names: 'Office' (features[10])")
+    assert first.endswith(": 2 features in all.")
+    assert second.startswith("Left out, because lines are no ponds: 'Row 0' (features[3])")
+    assert second.endswith(" and 2 more: 7 features in all.")
+
+
+def test_plurals_are_right(tmp_path: Path) -> None:
+    out = shape("Polygon", [square(0, 0)], name="Pond 1", sampling_point=[105.6999, 10.1])
+    assert told(read_farm(geojson(tmp_path, out), depot=DEPOT), "1 sampling point lies outside the outline of its pond")
+    beside = shape("Point", [105.71, 10.11], name="Norte")
+    assert "a point among 1 outline" in faults_of(geojson(tmp_path, *ponds(1), beside), depot=DEPOT)[0][1]
+    parts = shape("MultiPolygon", [[square(0, 0)], [square(2, 0)], [square(4, 0, 0.0002)]], name="A")
+    assert told(read_farm(geojson(tmp_path, parts), depot=DEPOT), "its 2 parts are 2 ponds, numbered; 1 small part was")
+    same = shape("Polygon", [[[105.7, 10.1]] * 4], name="A")
+    assert "has 1 different corner" in faults_of(geojson(tmp_path, same), depot=DEPOT)[0][1]
+    corners = "pond,lat,lon\nA,10.1,105.7\nA,10.1,105.701\nA,10.101,105.7\nB,10.2,105.7\n"
+    assert told(read_farm(table(tmp_path, corners), depot=DEPOT), "3 lines were joined to 1 outline, a corner a line")

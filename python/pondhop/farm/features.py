@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from unicodedata import category
@@ -12,6 +12,7 @@ from unicodedata import category
 from pondhop.errors import Fault
 from pondhop.farm.vocabulary import column_words
 from pondhop.places import LonLat
+from pondhop.units import counted
 
 Positions = list[LonLat]
 
@@ -235,6 +236,12 @@ def listed(names: Iterable[str], max_names: int = 5) -> str:
     told = list(names)
     more = f" and {len(told) - max_names} more" if len(told) > max_names else ""
     return ", ".join(told[:max_names]) + more
+
+
+def left_out_note(why: str, features: Sequence[Feature]) -> str:
+    """The note about features that were left out: why, which ones, and how many."""
+    count = f": {counted(len(features), 'feature')} in all" if len(features) > 1 else ""
+    return f"Left out, because {why}: {listed(feature.told() for feature in features)}{count}."
 
 
 def number_of(value: object) -> float | None:

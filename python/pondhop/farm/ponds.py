@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pondhop.errors import Fault
 from pondhop.farm import shapes
 from pondhop.farm.coordinates import MAX_LATITUDE_DEG, exchanged
-from pondhop.farm.features import Feature, Source, listed, number_of, shortened
+from pondhop.farm.features import Feature, Source, left_out_note, listed, number_of, shortened
 from pondhop.farm.neighbourhoods import MAX_GAP_M
 from pondhop.farm.roles import ROLE_COLUMNS, Sorted
 from pondhop.farm.words import Meaning, meanings
 from pondhop.places import Area, LonLat, distance_m, wrapped_longitude
+from pondhop.units import counted
 
 MAX_SAMPLING_OFFSET_M = 1_000.0
 """A sampling point further outside its pond than this is a typing error, not a shore."""
@@ -65,20 +66,21 @@ def read_ponds(told: Sorted, source: Source) -> list[Draft]:
     outlines: dict[int, list[Draft]] = {}
     points: dict[int, Feature] = {}
     open_lines: list[Feature] = []
+    blank: list[Feature] = []
     order = {id(feature): index for index, feature in enumerate(told.ponds)}
     for feature in told.ponds:
         geometry = feature.geometry
         if geometry.polygons or any(shapes.closed_line(line) for line in geometry.lines):
             outlines[order[id(feature)]] = _from_outlines(feature, source)
-        elif geometry.lines:
-            open_lines.append(feature)
         elif geometry.points:
             points[order[id(feature)]] = feature
+            _tell_lines_beside(feature, len(geometry.lines), source)
+        elif geometry.lines:
+            open_lines.append(feature)
         else:
-            source.faults.append(
-                Fault(feature.place, "the feature has no geometry", "draw each pond as one polygon or point")
-            )
+            blank.append(feature)
     _tell_open_lines(open_lines, told, source, has_ponds=bool(outlines or points))
+    _tell_blank(blank, told, source, has_ponds=bool(outlines or points))
     drafts = [draft for made in outlines.values() for draft in made]
     drafts = _without_surrounding(drafts, list(points.values()), source)
     kept = {id(draft) for draft in drafts}
@@ -149,7 +151,9 @@ def _parts(feature: Feature, areas: list[Area], source: Source) -> list[Area]:
     if len(large) == 1:
         source.notes.add(f"{feature.place}: the pond has {len(ponds)} parts; the largest is sampled.", kind="parts")
         return large
-    small = f"; {len(ponds) - len(large)} small parts were left out" if len(ponds) > len(large) else ""
+    num_small = len(ponds) - len(large)
+    were = "part was" if num_small == 1 else "parts were"
+    small = f"; {num_small} small {were} left out" if num_small else ""
     source.notes.add(
         f"{feature.told()}: its {len(large)} parts are {len(large)} ponds, numbered{small}.", kind="ponds of parts"
     )
@@ -184,8 +188,12 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
         Whether parts that enclose nothing are dropped where another part is good: a sliver refuses no pond.
     """
     polygons = [*feature.geometry.polygons]
+    num_beside = 0
     for line in feature.geometry.lines:
         closed = shapes.closed_line(line)
+        if closed is None and feature.geometry.polygons:
+            num_beside += 1
+            continue
         if closed is None:
             action = "draw it as a polygon, or close the line"
             source.faults.append(Fault(feature.place, f"an open line is not {what}", action))
@@ -194,6 +202,7 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
         gap_m = distance_m(line[0], line[-1])
         if gap_m > 0.0:
             source.notes.add(f"{feature.told()}: the line was closed over the last {gap_m:.1f} m.", kind="closed lines")
+    _tell_lines_beside(feature, num_beside, source)
     if not polygons and not feature.geometry.lines:
         message = f"without an outline this is not {what}"
         source.faults.append(Fault(feature.place, message, "draw it as a polygon"))
@@ -208,7 +217,7 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
             valid.append(mended)
         if fault is not None:
             faults.append(fault)
-    slivers = [fault for fault in faults if "no area" in fault.message or "different corners" in fault.message]
+    slivers = [fault for fault in faults if "no area" in fault.message or "different corner" in fault.message]
     if valid and may_mend and len(slivers) == len(faults):
         if faults:
             told = f"{len(faults)} slivers of it were" if len(faults) > 1 else "a sliver of it was"
@@ -229,7 +238,26 @@ def _tell_open_lines(lines: list[Feature], told: Sorted, source: Source, *, has_
             source.faults.append(Fault(feature.place, "an open line is not a pond", action))
     if left_out:
         what = "lines are no ponds" if len(left_out) > 1 else "a line is no pond"
-        source.notes.add(f"Left out, because {what}: {listed(feature.told() for feature in left_out)}.")
+        source.notes.add(left_out_note(what, left_out))
+
+
+def _tell_lines_beside(feature: Feature, num_lines: int, source: Source) -> None:
+    """Lines drawn together with an outline or a point are inlets and levees, which nobody samples."""
+    if num_lines:
+        were = "an open line drawn with it was" if num_lines == 1 else f"{num_lines} open lines drawn with it were"
+        source.notes.add(f"{feature.told()}: {were} left out.", kind="lines beside")
+
+
+def _tell_blank(blank: list[Feature], told: Sorted, source: Source, *, has_ponds: bool) -> None:
+    """Features without a place: a fault of what is a pond for certain, else a line of a table that was never drawn."""
+    remarks = [feature for feature in blank if has_ponds and feature.place not in told.sure]
+    for feature in blank:
+        if feature not in remarks:
+            action = "draw each pond as one polygon or point"
+            source.faults.append(Fault(feature.place, "the feature has no geometry", action))
+    if remarks:
+        what = "nothing of them was drawn" if len(remarks) > 1 else "nothing of it was drawn"
+        source.notes.add(left_out_note(what, remarks))
 
 
 def _without_surrounding(drafts: list[Draft], pins: list[Feature], source: Source) -> list[Draft]:
@@ -296,15 +324,13 @@ def _from_points(
         else:
             made[index] = _from_point(feature, source)
     if labels:
-        source.notes.add(
-            f"Left out, because points in or beside ponds that are outlines are labels: "
-            f"{listed(feature.told() for feature in labels)}."
-        )
+        source.notes.add(left_out_note("points in or beside ponds that are outlines are labels", labels))
     if doubtful:
         names = listed(feature.told() for feature in doubtful)
-        message = f"is this a pond? a point among {len(outlines)} outlines"
+        among = counted(len(outlines), "outline")
+        message = f"is this a pond? a point among {among}"
         if len(doubtful) > 1:
-            message = f"are these ponds? {len(doubtful)} points among {len(outlines)} outlines: {names}"
+            message = f"are these ponds? {len(doubtful)} points among {among}: {names}"
         action = (
             "remove them, or put 'pond' into the names of those that are; or say it in a property role: pond or other"
         )

@@ -105,6 +105,7 @@ def read_farm(
         names = listed(feature.told() for feature in told.stations)
         source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet: {names}.")
     ids = [draft.id for draft in drafts]
+    known = set(ids)
     return Farm(
         clean_text(source.name) or "farm",
         tuple(Pond(draft.id, draft.sampling_point, draft.outline, draft.service_s) for draft in drafts),
@@ -113,7 +114,7 @@ def read_farm(
         tuple(no_fly),
         tuple(fences),
         source.notes.sentences(),
-        _without_accepted([doubt for doubt in doubts if doubt.pond_id in ids], _accepted_ids(accept, ids)),
+        _without_accepted([doubt for doubt in doubts if doubt.pond_id in known], _accepted_ids(accept, ids)),
     )
 
 
@@ -203,9 +204,10 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     outside = [offset for offset in offsets if offset[0] > 0.0]
     if outside:
         offset_m, place = max(outside)
+        lie = "sampling point lies" if len(outside) == 1 else "sampling points lie"
+        whose, furthest = ("its pond", "") if len(outside) == 1 else ("their pond", "the furthest ")
         source.notes.add(
-            f"{len(outside)} sampling points lie outside the outline of their pond, "
-            f"the furthest by {offset_m:.1f} m ({place})."
+            f"{len(outside)} {lie} outside the outline of {whose}, {furthest}by {offset_m:.1f} m ({place})."
         )
     points, outlines = [draft.sampling_point for draft in drafts], [draft.outline for draft in drafts]
     for inner, outer in shapes.places_inside(points, outlines):
@@ -257,7 +259,8 @@ def _told_odd(drafts: Sequence[Draft], told: Sorted, source: Source) -> list[Dou
 
 
 def _without_accepted(doubts: Sequence[Doubt], accept: Sequence[str]) -> tuple[Doubt, ...]:
-    return tuple(doubt for doubt in doubts if doubt.pond_id not in accept)
+    accepted = set(accept)
+    return tuple(doubt for doubt in doubts if doubt.pond_id not in accepted)
 
 
 def _accepted_ids(accept: Sequence[str], ids: Sequence[str]) -> list[str]:

@@ -16,6 +16,7 @@ from pondhop.farm.features import (
     Source,
     clean_text,
     is_blank,
+    left_out_note,
     listed,
     normal_name,
     present_columns,
@@ -278,12 +279,11 @@ def _tell_left_out(
             doubtful.extend((feature, f"it is called {feature.name!r}") for feature in outlines if feature.name)
             features = [feature for feature in features if not feature.geometry.polygons or not feature.name]
         if features:
-            names = listed(feature.told() for feature in features)
             what = "they are no ponds by their names" if meaning is Meaning.OTHER else "they bound land, not water"
             if len(features) == 1:
                 what = "it is no pond by its name" if meaning is Meaning.OTHER else "it bounds land, not water"
             hint = "" if meaning is Meaning.OTHER else " To keep the drones inside, give it the role fence."
-            source.notes.add(f"Left out, because {what}: {names}.{hint}")
+            source.notes.add(f"{left_out_note(what, features)}{hint}")
 
 
 def _is_declared(feature: Feature) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from pondhop.errors import Fault
 from pondhop.farm.features import Positions
 from pondhop.places import EARTH_RADIUS_M, Area, LonLat, Ring, unrolled_longitude, wrapped_longitude
+from pondhop.units import counted
 
 if TYPE_CHECKING:
     import shapely
@@ -98,7 +99,7 @@ def valid_areas(place: str, rings: Area) -> tuple[Area | None, Fault | None]:
 
     for ring in rings:
         if len(set(ring)) < 3:
-            message = f"the outline has {len(set(ring))} different corners"
+            message = f"the outline has {counted(len(set(ring)), 'different corner')}"
             return None, Fault(place, message, "give a pond at least three corners, or make it a Point")
     polygon = _polygon(rings)
     if polygon.is_valid and area_m2(rings) >= MIN_AREA_M2:
@@ -206,16 +207,22 @@ def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tu
 
 
 def places_together(points: Sequence[LonLat], within_m: float) -> list[tuple[int, int]]:
-    """Pairs (i, j): place j lies that near to place i, the first one to do so in their order."""
-    import shapely
+    """Pairs (i, j): place j lies that near to place i, which comes before it and is itself near none before.
 
+    Found in cells of that width, so that thousands of places on one spot take no longer than others.
+    """
     if len(points) < 2:
         return []
     lonlats = _unrolled(tuple(points), points[0][0])
     shrink = np.cos(np.radians(lonlats[:, 1]))
-    places = shapely.points(METRES_PER_DEGREE * np.column_stack([lonlats[:, 0] * shrink, lonlats[:, 1]]))
-    near = shapely.STRtree(np.asarray(places)).query(places, predicate="dwithin", distance=within_m)
-    first_of: dict[int, int] = {}
-    for place, other in near.T.tolist():
-        first_of[place] = min(other, first_of.get(place, place))
-    return sorted((first, place) for place, first in first_of.items() if first < place)
+    metres = METRES_PER_DEGREE * np.column_stack([lonlats[:, 0] * shrink, lonlats[:, 1]])
+    alone: dict[tuple[int, int], list[int]] = {}
+    pairs = []
+    for place, (column, row) in enumerate(np.floor(metres / within_m).astype(int).tolist()):
+        around = (cell for x in (-1, 0, 1) for y in (-1, 0, 1) for cell in alone.get((column + x, row + y), ()))
+        near = [other for other in around if math.dist(metres[place], metres[other]) < within_m]
+        if near:
+            pairs.append((min(near), place))
+        else:
+            alone.setdefault((column, row), []).append(place)
+    return pairs

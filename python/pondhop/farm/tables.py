@@ -21,6 +21,7 @@ from pondhop.farm.letter_o import sign_of_o
 from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
 from pondhop.places import LonLat
+from pondhop.units import counted
 
 MAX_CELL_CHARACTERS = 10_000_000
 """Python's own limit of 131,072 is less than an outline in WKT may have."""
@@ -200,7 +201,7 @@ def _header(rows: Sequence[Row], word: str, source: Source) -> tuple[int, Column
 def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) -> Feature | None:
     names = columns.names
     if len(row) > len(names) and any(cell.strip() for cell in row[len(names) :]):
-        message = f"{len(row)} values for {len(names)} columns"
+        message = f"{counted(len(row), 'value')} for {counted(len(names), 'column')}"
         action = "put text with commas in quotes, and write decimals with a point or separate columns with semicolons"
         source.faults.append(Fault(place, message, action))
         return None
@@ -333,10 +334,8 @@ def _joined_corners(features: list[Feature], columns: Columns, source: Source) -
         first = members[0]
         ring = [member.geometry.points[0] for member in members]
         joined.append(Feature(first.place, first.property_place, first.properties, Geometry(polygons=[[ring]])))
-    num_lines = sum(map(len, repeated))
-    source.notes.add(
-        f"{num_lines} lines were joined to {len(repeated)} outlines, a corner a line, by column {id_column!r}."
-    )
+    num_lines, outlines = sum(map(len, repeated)), counted(len(repeated), "outline")
+    source.notes.add(f"{num_lines} lines were joined to {outlines}, a corner a line, by column {id_column!r}.")
     return joined
 
 
