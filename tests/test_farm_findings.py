@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from farm_files import DEPOT, faults_of, geojson, ids, kml, placemark, polygon, ponds, shape, square, table
+from farm_files import DEPOT, faults_of, geojson, ids, kml, kml_polygon, placemark, polygon, ponds, shape, square, table
 from pondhop.farm import Farm, read_farm
 from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m
 
@@ -317,3 +317,53 @@ def test_plurals_are_right(tmp_path: Path) -> None:
     assert "has 1 different corner" in faults_of(geojson(tmp_path, same), depot=DEPOT)[0][1]
     corners = "pond,lat,lon\nA,10.1,105.7\nA,10.1,105.701\nA,10.101,105.7\nB,10.2,105.7\n"
     assert told(read_farm(table(tmp_path, corners), depot=DEPOT), "3 lines were joined to 1 outline, a corner a line")
+
+
+# ------------------------------------------------------------------------------------------ hidden in the map program
+
+HIDDEN = "<visibility>0</visibility>"
+
+
+def pond_mark(number: int, *, inside: str = "", name: str = "Pond") -> str:
+    return placemark(f"{name} {number}", f"{inside}{kml_polygon(number, 0)}")
+
+
+def test_a_hidden_pond_is_left_out_with_a_note(tmp_path: Path) -> None:
+    seen = "".join(pond_mark(n, inside="<visibility>1</visibility>") for n in (1, 2))
+    farm = read_farm(kml(tmp_path, seen, pond_mark(3, inside=HIDDEN)), depot=DEPOT)
+    assert ids(farm) == ["Pond 1", "Pond 2"]
+    [note] = farm.notes
+    assert note.startswith("Left out, because it is hidden in the map program (to sample it, tick it there and save")
+    assert note.endswith("'Pond 3' (placemark 3).")
+
+
+@pytest.mark.parametrize("value", ["0", "false", " 0 "])
+def test_what_lies_in_a_hidden_folder_is_hidden(tmp_path: Path, value: str) -> None:
+    inner = f"<Folder><name>Old</name>{pond_mark(3)}{pond_mark(4)}</Folder>"
+    outer = f"<Folder><name>Drained</name><visibility>{value}</visibility>{inner}{pond_mark(5)}</Folder>"
+    farm = read_farm(kml(tmp_path, pond_mark(1), outer), depot=DEPOT)
+    assert ids(farm) == ["Pond 1"]
+    assert told(farm, "'Pond 3' (placemark 2), 'Pond 4' (placemark 3), 'Pond 5' (placemark 4): 3 features in all.")
+
+
+def test_a_map_that_is_hidden_as_a_whole_is_read_with_a_note(tmp_path: Path) -> None:
+    for parts in ((HIDDEN, pond_mark(1), pond_mark(2)), tuple(pond_mark(n, inside=HIDDEN) for n in (1, 2))):
+        farm = read_farm(kml(tmp_path, *parts), depot=DEPOT)
+        assert ids(farm) == ["Pond 1", "Pond 2"]
+        assert farm.notes == (
+            "In the map program all 2 ponds are hidden; taken all the same, because the file has no other pond.",
+        )
+
+
+def test_hidden_areas_keep_drones_out_and_hidden_depots_give_way(tmp_path: Path) -> None:
+    zone = placemark("No fly", f"{HIDDEN}{kml_polygon(5, 5)}")
+    depots = [
+        placemark("Depot", f"{inside}<Point><coordinates>105.69{n},10.0995</coordinates></Point>")
+        for n, inside in ((5, HIDDEN), (8, ""))
+    ]
+    farm = read_farm(kml(tmp_path, pond_mark(1), zone, *depots))
+    assert (len(farm.no_fly), farm.depot) == (1, (105.698, 10.0995))
+    assert told(farm, "kept all the same, because drones must know of them: 'No fly' (placemark 2).")
+    assert told(farm, "another depot is the one that can be seen in the map program: 'Depot' (placemark 3).")
+    alone = read_farm(kml(tmp_path, pond_mark(1), depots[0]))
+    assert alone.depot == (105.695, 10.0995)

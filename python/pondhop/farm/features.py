@@ -69,6 +69,8 @@ class Feature:
         What the format calls the way it is drawn, which people name too: the style of a placemark.
     doubts
         What was guessed about its position while reading, a sentence each; only its owner can tell whether it is right.
+    is_hidden
+        Whether its owner had unticked it, or a folder around it, in the map program.
     """
 
     place: str
@@ -79,6 +81,7 @@ class Feature:
     folders: tuple[str, ...] = ()
     style: str = ""
     doubts: list[str] = field(default_factory=list)
+    is_hidden: bool = False
 
     def find(self, *names: str) -> tuple[str, object] | None:
         """The first property that is there under one of the names, as the file spells it, and its value.

@@ -149,6 +149,7 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
             doubtful.append((feature, verdict.because))
             continue
         _file(feature, verdict, told, left_out, source)
+    _leave_hidden(told, source)
     _tell_left_out(left_out, told, doubtful, source)
     for feature, because in doubtful:
         message = f"is this a pond? {because}"
@@ -157,16 +158,42 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     return told
 
 
+def _leave_hidden(told: Sorted, source: Source) -> None:
+    """Leave out the ponds that were unticked in the map program, as they are left out of its map, and say so.
+
+    What keeps drones safe counts, seen or not. Where no pond is seen, the whole map was unticked, and all are taken.
+    """
+    hidden = [feature for feature in told.ponds if feature.is_hidden]
+    if hidden and len(hidden) == len(told.ponds):
+        ponds = "the only pond is" if len(hidden) == 1 else f"all {len(hidden)} ponds are"
+        source.notes.add(f"In the map program {ponds} hidden; taken all the same, because the file has no other pond.")
+    elif hidden:
+        told.ponds = [feature for feature in told.ponds if not feature.is_hidden]
+        are, them = ("it is", "it") if len(hidden) == 1 else ("they are", "them")
+        why = f"{are} hidden in the map program (to sample {them}, tick {them} there and save the map again)"
+        source.notes.add(left_out_note(why, hidden))
+    if any(not feature.is_hidden for feature in told.depots):
+        unused = [feature for feature in told.depots if feature.is_hidden]
+        told.depots = [feature for feature in told.depots if not feature.is_hidden]
+        if unused:
+            source.notes.add(left_out_note("another depot is the one that can be seen in the map program", unused))
+    areas = [feature for feature in (*told.no_fly, *told.fences) if feature.is_hidden]
+    if areas:
+        names = listed(feature.told() for feature in areas)
+        source.notes.add(f"Hidden in the map program and kept all the same, because drones must know of them: {names}.")
+
+
 def _with_series(judged: Sequence[tuple[Feature, Verdict]], source: Source) -> list[tuple[Feature, Verdict]]:
     """What each feature is, where many numbered points of one word such as station are the ponds, if no others are.
 
     Who measures at points calls them Station 1, Station 2, ...; one Station beside ponds is where drones charge.
     """
-    rivals = [(feature, verdict) for feature, verdict in judged if _may_be_pond(verdict)]
+    seen = [(feature, verdict) for feature, verdict in judged if not feature.is_hidden] or judged
+    rivals = [(feature, verdict) for feature, verdict in seen if _may_be_pond(verdict)]
     if any(_is_closed(feature) or verdict.meaning is Meaning.POND for feature, verdict in rivals):
         return list(judged)
     series: dict[str, list[Feature]] = {}
-    for feature, verdict in judged:
+    for feature, verdict in seen:
         word = _series_word(feature, verdict)
         if word is not None:
             series.setdefault(word, []).append(feature)
