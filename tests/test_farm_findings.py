@@ -7,7 +7,21 @@ from pathlib import Path
 
 import pytest
 
-from farm_files import DEPOT, faults_of, geojson, ids, kml, kml_polygon, placemark, polygon, ponds, shape, square, table
+from farm_files import (
+    DEPOT,
+    PONDS,
+    faults_of,
+    geojson,
+    ids,
+    kml,
+    kml_polygon,
+    placemark,
+    polygon,
+    ponds,
+    shape,
+    square,
+    table,
+)
 from pondhop.farm import Farm, read_farm
 from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m
 
@@ -367,3 +381,105 @@ def test_hidden_areas_keep_drones_out_and_hidden_depots_give_way(tmp_path: Path)
     assert told(farm, "another depot is the one that can be seen in the map program: 'Depot' (placemark 3).")
     alone = read_farm(kml(tmp_path, pond_mark(1), depots[0]))
     assert alone.depot == (105.695, 10.0995)
+
+
+# ------------------------------------------------------------------------------------------ headings and names of ponds
+
+
+@pytest.mark.parametrize(
+    ("text", "names", "heading"),
+    [
+        ("Stn Code,lat,lon\n101,10.1,105.7\n102,10.101,105.7\n", ["101", "102"], "Stn Code"),
+        ("station,lat,lon\n7,10.1,105.7\n9,10.101,105.7\n", ["7", "9"], "station"),
+        ("xyz,lat,lon\nNorte,10.1,105.7\nSur,10.101,105.7\n", ["Norte", "Sur"], "xyz"),
+        (
+            "name,Grid Ref,lat,lon\nPond,B1,10.1,105.7\nPond,B2,10.101,105.7\nPond,B3,10.102,105.7\n",
+            ["B1", "B2", "B3"],
+            "Grid Ref",
+        ),
+        (
+            "Name,Field Code,lat,lon\nA,B-1,10.1,105.7\nA,B-2,10.101,105.7\nC,B-3,10.102,105.7\n",
+            ["B-1", "B-2", "B-3"],
+            "Field Code",
+        ),
+    ],
+)
+def test_the_heading_that_gives_the_names_is_told_as_it_is_spelled(
+    tmp_path: Path, text: str, names: list[str], heading: str
+) -> None:
+    farm = read_farm(table(tmp_path, text), depot=DEPOT)
+    assert ids(farm) == names
+    assert told(farm, f"named by column {heading!r}")
+
+
+def test_numbers_under_any_heading_are_no_names(tmp_path: Path) -> None:
+    farm = read_farm(table(tmp_path, "depth,lat,lon\n3,10.1,105.7\n4,10.101,105.7\n"), depot=DEPOT)
+    assert ids(farm) == ["1", "2"]
+
+
+def test_numbers_in_columns_of_codes_are_read_from_maps_too(tmp_path: Path) -> None:
+    features = [shape("Point", [105.7, 10.1 + 0.001 * n], SiteNo=n, depth=2 * n) for n in (4, 7)]
+    assert ids(read_farm(geojson(tmp_path, *features), depot=DEPOT)) == ["4", "7"]
+
+
+BESIDE = ("Office", "Pump house", "No fly", "Gate", "Road")
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        [f"{word} {number}" for number in range(1, 7)]
+        for word in (
+            *(
+                "Pool",
+                "Cell",
+                "Paddy",
+                "Tank",
+                "Bassin",
+                "Estanque",
+                "Viveiro",
+                "Kolam",
+                "Ao",
+                "Cage",
+                "Raceway",
+                "Petak",
+            ),
+            *(
+                "Tambak",
+                "Viivi",
+                "Gher",
+                "Vuông",
+                "Bè",
+                "网箱",
+                "가두리",
+                "いけす",
+                "กระชัง",
+                "Садок",
+                "قفص",
+                "Compartment",
+            ),
+        )
+    ],
+    ids=lambda names: names[0],
+)
+def test_ponds_by_any_name_among_things_that_are_none(tmp_path: Path, names: list[str]) -> None:
+    things: list[dict[str, object]] = [polygon(8, row, name=name) for row, name in enumerate(BESIDE[:3])]
+    things += [shape("Point", [105.72, 10.11], name="Gate")]
+    things += [shape("LineString", [[105.72, 10.11], [105.72, 10.12]], name="Road")]
+    outlines = [polygon(column, 0, name=name) for column, name in enumerate(names)]
+    points = [shape("Point", [105.7, 10.1 + 0.001 * row], name=name) for row, name in enumerate(names)]
+    mixed = [*(polygon(column, 0, name=f"Pond {column}") for column in range(6)), polygon(7, 0, name=names[1])]
+    for ponds_drawn in (outlines, points, mixed):
+        farm = read_farm(geojson(tmp_path, *ponds_drawn, *things), depot=DEPOT)
+        assert (len(farm.ponds), len(farm.no_fly), farm.doubts) == (len(ponds_drawn), 1, ())
+
+
+@pytest.mark.parametrize("name", ["Basin", "Lagoon", "Petak", "Tambak", "Tank B", "Pool", "Talab", "Lồng"])
+def test_a_word_for_ponds_alone_is_a_pond(tmp_path: Path, name: str) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(6), polygon(5, 5, name=name), polygon(8, 8, name="Office")), depot=DEPOT)
+    assert (ids(farm)[6:], farm.doubts) == ([name], ())
+
+
+@pytest.mark.parametrize("name", ["Swimming pool", "Kolam renang", "Bak air", "Hồ bơi", "Water tank"])
+def test_water_that_nobody_farms_is_no_pond(tmp_path: Path, name: str) -> None:
+    assert ids(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)) == PONDS[:3]

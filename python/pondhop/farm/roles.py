@@ -299,10 +299,12 @@ def _tell_left_out(
     left_out: dict[Meaning, list[Feature]], told: Sorted, doubtful: list[tuple[Feature, str]], source: Source
 ) -> None:
     """Note what was left out; where that would be most of the outlines, the words mean something else here."""
-    num_outlines = sum(bool(feature.geometry.polygons) for feature in told.ponds)
+    # Where all ponds are points, outlines are what lies beside them.
+    num_outlines = sum(bool(feature.geometry.polygons) for feature in told.ponds) or len(told.ponds)
     for meaning, features in left_out.items():
         outlines = [feature for feature in features if feature.geometry.polygons]
-        if len(outlines) > max(1, num_outlines) and not any(feature.folders for feature in outlines):
+        is_most = 0 < num_outlines < len(outlines) and len(outlines) > 1
+        if is_most and not any(feature.folders for feature in outlines):
             doubtful.extend((feature, f"it is called {feature.name!r}") for feature in outlines if feature.name)
             features = [feature for feature in features if not feature.geometry.polygons or not feature.name]
         if features:

@@ -20,6 +20,7 @@ from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank,
 from pondhop.farm.letter_o import sign_of_o
 from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
+from pondhop.farm.words import is_plain_word, is_unnamed
 from pondhop.places import LonLat
 from pondhop.units import counted
 
@@ -319,7 +320,10 @@ def _joined_corners(features: list[Feature], columns: Columns, source: Source) -
     groups: dict[str, list[Feature]] = {}
     for number, feature in enumerate(features):
         value = feature.properties.get(id_column)
-        key = f"\0{number}" if is_blank(value) or feature.find("role") else str(value).strip()
+        text = "" if is_blank(value) else str(value).strip()
+        # What a program or nobody in particular calls a pond is no id that corners could share.
+        is_id = text and not is_unnamed(text) and not is_plain_word(text) and not feature.find("role")
+        key = text if is_id else f"\0{number}"
         groups.setdefault(key, []).append(feature)
     repeated = [members for members in groups.values() if len(members) > 1]
     if not repeated or min(map(len, repeated)) < MIN_CORNERS or _is_one_name(groups):

@@ -67,6 +67,11 @@ def _words(text: str) -> list[str]:
     return list(map(_stem, _split(text)))
 
 
+def heading_words(text: str) -> list[str]:
+    """The words of a heading, as in ``Site_Code`` and ``pondNo``."""
+    return _split(text)
+
+
 def plain_words(text: str) -> list[str]:
     """The words of a name without digits and signs, as they are written; in scripts without blanks whole runs."""
     return _LETTER_RUN.findall(unicodedata.normalize("NFC", text).casefold())
