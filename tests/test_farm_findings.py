@@ -53,6 +53,7 @@ def told(farm: Farm, words: str) -> bool:
         ["Trạm 1", "Trạm 2"],
         ["Stasiun 01", "Stasiun 02"],
         ["STATION_7", "STATION_8", "STATION_9"],
+        ["Station 1 upstream", "Station 2 by Smith's", "Station 3"],
     ],
 )
 def test_numbered_points_of_one_word_are_the_ponds_where_nothing_else_is(tmp_path: Path, names: list[str]) -> None:
@@ -80,6 +81,7 @@ def test_stations_of_drones_stay_what_they_are(tmp_path: Path) -> None:
     farm = read_farm(geojson(tmp_path, *ponds(), *docks), depot=DEPOT)
     assert (len(farm.ponds), len(farm.stations)) == (3, 3)
     assert told(farm, "3 stations are in the file; plans do not use stations yet: 'Dock 1' (features[3])")
+    assert told(farm, "To sample there, give them the role pond.")
     codes = read_farm(points(tmp_path, "A1", "A2", "A3", "Dock 1", "Dock 2"), depot=DEPOT)
     assert (ids(codes), len(codes.stations)) == (["A1", "A2", "A3"], 2)
     lone = read_farm(points(tmp_path, "Station 1", "Station 2", "Station 3", "Dock"), depot=DEPOT)
@@ -321,6 +323,9 @@ def test_lines_and_things_beside_ponds_are_counted(tmp_path: Path) -> None:
 
 
 def test_plurals_are_right(tmp_path: Path) -> None:
+    pictures = ["<GroundOverlay><name>A</name></GroundOverlay>", "<ScreenOverlay><name>B</name></ScreenOverlay>"]
+    for count, words in ((1, "no pond: overlay 'A'."), (2, "no pond: 2 overlays 'A', 'B'.")):
+        assert told(read_farm(kml(tmp_path, pond_mark(1), *pictures[:count]), depot=DEPOT), words)
     out = shape("Polygon", [square(0, 0)], name="Pond 1", sampling_point=[105.6999, 10.1])
     assert told(read_farm(geojson(tmp_path, out), depot=DEPOT), "1 sampling point lies outside the outline of its pond")
     beside = shape("Point", [105.71, 10.11], name="Norte")

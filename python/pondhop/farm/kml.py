@@ -28,13 +28,15 @@ def read_kml(root: Element, source: Source) -> None:
     for number, (element, around) in enumerate(_placemarks(root, others), start=1):
         _read_placemark(f"placemark {number}", element, around, source)
     if others["overlay"]:
-        source.notes.add(f"Left out, because a picture is no pond: overlay {listed(others['overlay'])}.")
+        overlays = "overlay" if len(others["overlay"]) == 1 else f"{len(others['overlay'])} overlays"
+        source.notes.add(f"Left out, because a picture is no pond: {overlays} {listed(others['overlay'])}.")
     if others["link"] and not source.features and not source.faults:
         message = f"the file holds only a link to the web, {others['link'][0]}"
         action = "export the map again without 'network link', so that the file holds the ponds themselves"
         source.faults.append(Fault("file", message, action))
     elif others["link"]:
-        source.notes.add(f"Left out, because it is a link to the web: {listed(others['link'])}.")
+        they_are = "it is a link" if len(others["link"]) == 1 else f"they are {len(others['link'])} links"
+        source.notes.add(f"Left out, because {they_are} to the web: {listed(others['link'])}.")
 
 
 class _Around(NamedTuple):

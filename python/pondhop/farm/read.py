@@ -23,7 +23,7 @@ from pondhop.farm.names import adopt_names, name_ponds
 from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
-from pondhop.farm.roles import Sorted, no_pond_fault, sort_by_role
+from pondhop.farm.roles import Sorted, are_numbered_stations, no_pond_fault, sort_by_role
 from pondhop.places import Area, LonLat
 
 ACCEPT_ALL = "all"
@@ -103,7 +103,8 @@ def read_farm(
     if stations:
         are = "station is" if len(stations) == 1 else "stations are"
         names = listed(feature.told() for feature in told.stations)
-        source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet: {names}.")
+        hint = " To sample there, give them the role pond." if are_numbered_stations(told.stations) else ""
+        source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet: {names}.{hint}")
     ids = [draft.id for draft in drafts]
     known = set(ids)
     return Farm(

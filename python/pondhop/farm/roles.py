@@ -222,11 +222,14 @@ def _series_word(feature: Feature, verdict: Verdict) -> str | None:
     if series is None:
         return None
     word, others = series
-    is_by_name = verdict.text == feature.name
-    if is_by_name and not others and not any(letter.isdigit() for letter in feature.name):
-        return None
-    is_told_apart = all(len(other) <= MAX_CODE_LETTERS or other in pond_like_words() for other in others)
-    return word if is_told_apart or not is_by_name else None
+    is_code = bool(others) and all(len(other) <= MAX_CODE_LETTERS or other in pond_like_words() for other in others)
+    is_numbered = any(letter.isdigit() for letter in feature.name)
+    return word if is_numbered or is_code or verdict.text != feature.name else None
+
+
+def are_numbered_stations(stations: Sequence[Feature]) -> bool:
+    """Whether some places that were taken as stations are called as sampling points often are."""
+    return any(series_of(feature.name) and any(map(str.isdigit, feature.name)) for feature in stations)
 
 
 def no_pond_fault(told: Sorted) -> Fault:
