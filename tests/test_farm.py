@@ -314,7 +314,7 @@ def test_roles_ids_and_times_are_read(tmp_path: Path) -> None:
     assert farm.ponds[1] == Pond("7", (-89.462, 37.702))
     assert (len(farm.no_fly), len(farm.fences), farm.stations) == (1, 1, ((-89.461, 37.7),))
     assert farm.depot == DEPOT
-    assert farm.notes == ("1 station is in the file; plans do not use stations yet.",)
+    assert farm.notes == ("1 station is in the file; plans do not use stations yet: features[4].",)
 
 
 @pytest.mark.parametrize(
@@ -361,7 +361,7 @@ def test_a_sampling_point_in_another_pond_is_noted(tmp_path: Path) -> None:
         DEPOT_FEATURE,
     )
     notes = read_farm(path).notes
-    assert any("1 sampling points lie outside" in note and "44." in note for note in notes)
+    assert any("1 sampling point lies outside" in note and "44." in note for note in notes)
     assert any("sampling point of pond a lies in pond b" in note for note in notes)
 
 

@@ -15,16 +15,29 @@ from pathlib import Path
 import pytest
 import shapely
 
+from farm_files import (
+    DEPOT,
+    PONDS,
+    faults_of,
+    geojson,
+    ids,
+    kml,
+    kml_polygon,
+    placemark,
+    polygon,
+    ponds,
+    shape,
+    square,
+    table,
+)
 from pondhop import InvalidInput
-from pondhop.farm import Farm, doubt_fault, read_farm
+from pondhop.farm import doubt_fault, read_farm
 from pondhop.farm.archives import Room
 from pondhop.farm.formats import read_source
 from pondhop.farm.shapes import clearance_m
 
 FIELD = Path(__file__).parent / "data" / "field"
 SHARED_FIELD = Path(__file__).parents[1] / ".." / "shared" / "data" / "field"
-DEPOT = (105.6985, 10.0995)
-PONDS = [f"Pond {number}" for number in range(1, 7)]
 
 
 def field(name: str) -> Path:
@@ -32,63 +45,6 @@ def field(name: str) -> Path:
     path = FIELD / name if (FIELD / name).exists() else SHARED_FIELD / name
     if not path.exists():
         pytest.skip("the development data ../shared/data/field is not here")
-    return path
-
-
-def faults_of(path: Path, **options: object) -> list[tuple[str, str, str]]:
-    with pytest.raises(InvalidInput) as caught:
-        read_farm(path, **options)  # type: ignore[arg-type]
-    return [(fault.path, fault.message, fault.action) for fault in caught.value.faults]
-
-
-def ids(farm: Farm) -> list[str]:
-    return [pond.id for pond in farm.ponds]
-
-
-def square(column: int, row: int, size: float = 0.0018) -> list[list[float]]:
-    west, south = 105.7 + 0.002 * column, 10.1 + 0.001 * row
-    east, north = west + size, south + size / 2
-    return [[west, south], [east, south], [east, north], [west, north], [west, south]]
-
-
-def polygon(column: int, row: int, **properties: object) -> dict[str, object]:
-    geometry = {"type": "Polygon", "coordinates": [square(column, row)]}
-    return {"type": "Feature", "properties": properties, "geometry": geometry}
-
-
-def shape(kind: str, coordinates: object, **properties: object) -> dict[str, object]:
-    return {"type": "Feature", "properties": properties, "geometry": {"type": kind, "coordinates": coordinates}}
-
-
-def ponds(number: int = 3) -> list[dict[str, object]]:
-    return [polygon(index % 3, index // 3, name=f"Pond {index + 1}") for index in range(number)]
-
-
-def geojson(folder: Path, *features: Mapping[str, object], **members: object) -> Path:
-    path = folder / "farm.geojson"
-    path.write_text(json.dumps({"type": "FeatureCollection", **members, "features": list(features)}), "utf-8")
-    return path
-
-
-def table(folder: Path, text: str, encoding: str = "utf-8") -> Path:
-    path = folder / "farm.csv"
-    path.write_bytes(text.encode(encoding))
-    return path
-
-
-def placemark(name: str, body: str) -> str:
-    return f"<Placemark><name>{name}</name>{body}</Placemark>"
-
-
-def kml_polygon(column: int, row: int) -> str:
-    corners = " ".join(f"{lon},{lat},0" for lon, lat in square(column, row))
-    ring = f"<LinearRing><coordinates>{corners}</coordinates></LinearRing>"
-    return f"<Polygon><outerBoundaryIs>{ring}</outerBoundaryIs></Polygon>"
-
-
-def kml(folder: Path, *parts: str, suffix: str = ".kml") -> Path:
-    path = folder / f"farm{suffix}"
-    path.write_text(f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>{"".join(parts)}</Document></kml>', "utf-8")
     return path
 
 
@@ -444,7 +400,7 @@ def test_parts_of_one_size_are_ponds_and_crumbs_are_not(tmp_path: Path) -> None:
     parts = shape("MultiPolygon", [[square(0, 0)], [square(1, 0)], crumb], name="Block")
     farm = read_farm(geojson(tmp_path, parts), depot=DEPOT)
     assert ids(farm) == ["Block 1", "Block 2"]
-    assert "1 small parts were left out" in farm.notes[0]
+    assert "1 small part was left out" in farm.notes[0]
     points = shape("MultiPoint", [[105.7, 10.1], [105.71, 10.1]], name="B")
     assert ids(read_farm(geojson(tmp_path, points), depot=DEPOT)) == ["B 1", "B 2"]
 

@@ -97,6 +97,20 @@ def test_the_plan_file_is_as_qgroundcontrol_wants_it() -> None:
     assert polygons[0]["polygon"] == [[36.99, -89.01], [36.99, -88.99], [37.01, -88.99], [37.01, -89.01]]
 
 
+def test_holes_of_areas_are_flown_by_what_an_autopilot_can_store() -> None:
+    west, home = square(-89.006, 37.0, 0.001), square(*DEPOT, 0.003)
+    fleet = Fleet(num_drones=1)
+    away = build(fleet, [1], no_fly=((square(-89.006, 37.0, 0.002), west),))
+    assert (len(away.fences), away.no_fly) == (1, (square(-89.006, 37.0, 0.002)[:-1],))
+    # Around the depot the hole alone says where to fly: nothing in the zone can be reached from there.
+    within = build(fleet, [1], no_fly=((square(*DEPOT, 0.005), square(*DEPOT, 0.0001)),))
+    assert within.no_fly == ()
+    assert [rule.kind for rule in broken_rules(within, ARDUPILOT)] == ["outside_fence"]
+    roomy = build(fleet, [1], no_fly=((square(*DEPOT, 0.005), west, home),))
+    assert roomy.fences[1:] == (home[:-1],)
+    assert broken_rules(roomy, ARDUPILOT) == []
+
+
 def test_the_waypoints_file_has_twelve_columns_and_home_first() -> None:
     lines = waypoints(build(Fleet(num_drones=1), [1])).split("\n")
     assert lines[0] == "QGC WPL 110"

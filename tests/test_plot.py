@@ -9,7 +9,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from hand_made import make_farm, make_plan, square, two_drones
+from hand_made import DEPOT, make_farm, make_plan, square, two_drones
 from pondhop import InvalidInput, Problem, _core, evaluate, missions
 from pondhop.farm import Pond, read_farm
 from pondhop.fleet import Fleet
@@ -197,3 +197,22 @@ def test_a_real_farm_is_drawn(tmp_path: Path) -> None:
 def test_importing_plot_loads_no_matplotlib() -> None:
     command = "import sys, pondhop.plot; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", command], check=False).returncode == 0
+
+
+def test_holes_of_areas_are_drawn_as_they_are_flown() -> None:
+    from matplotlib.collections import PolyCollection
+
+    island = square(-89.002, 37.001, 0.0001)
+    zones = ((square(*DEPOT, 0.008), square(*DEPOT, 0.004)), (square(-89.02, 37.0, 0.002), square(-89.02, 37.0, 0.001)))
+    farm = make_farm(no_fly=zones, fences=((square(*DEPOT, 0.01), square(-89.005, 37.006, 0.001)),))
+    first, *others = farm.ponds
+    farm = replace(farm, ponds=(replace(first, outline=(*first.outline, island)), *others))
+    ax = plot_plan(make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
+    areas = {item.get_label(): item for item in ax.collections if isinstance(item, PolyCollection)}
+    # Five corners a ring, and one more that closes it: a ring with its hole, a zone without, and the hole of the fence.
+    assert [len(path) for path in areas["no-fly zone"].get_paths()] == [12, 6, 6]
+    assert [len(path) for path in areas["fence"].get_paths()] == [6]
+    water = next(item for item in ax.collections if isinstance(item, PolyCollection))
+    assert [len(path) for path in water.get_paths()] == [12, 6, 6, 6, 6]
+    corners = np.asarray(water.get_paths()[0].vertices)
+    assert [float(np.linalg.det(ring[[1, 2]] - ring[0])) > 0.0 for ring in (corners[:6], corners[6:])] == [True, False]

@@ -120,7 +120,15 @@ def generate_farm(
     at: Annotated[str, typer.Option(metavar="LON,LAT", help="Where the farm lies.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="The GeoJSON file.")],
     seed: Seed = 1,
-    missing_share: Annotated[float, typer.Option(min=0.0, max=0.9, help="Share of the ponds left out.")] = 0.0,
+    missing_share: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            max=0.9,
+            help="How much of the farm has no pond, as where some were filled in or sold: 0.2 is one place in five. "
+            "The number of ponds stays what --ponds says; the farm grows.",
+        ),
+    ] = 0.0,
     irregular: Annotated[bool, typer.Option(help="Give the farm an irregular outline.")] = False,
     as_json: Json = False,
 ) -> None:

@@ -11,7 +11,7 @@ from pondhop._core import LocalFrame
 from pondhop.errors import Fault
 from pondhop.farm import shapes
 from pondhop.farm.coordinates import check_coordinates
-from pondhop.farm.features import Feature, Geometry, Source, listed, number_of, shortened
+from pondhop.farm.features import Feature, Geometry, Source, left_out_note, number_of, shortened
 from pondhop.farm.neighbourhoods import middle
 from pondhop.farm.ponds import Draft, areas_of
 from pondhop.farm.roles import Sorted
@@ -38,8 +38,7 @@ def depot_of(told: Sorted, given: LonLat | None, source: Source) -> LonLat | Non
             message = f"a second depot; the first is {first.place}"
             source.faults.append(Fault(feature.place, message, "keep one, or pass --depot LON,LAT"))
     if told.starts and (given is not None or in_file is not None):
-        names = listed(feature.told() for feature in told.starts)
-        source.notes.add(f"Left out, because the depot is known: {names}.")
+        source.notes.add(left_out_note("the depot is known", told.starts))
     if given is None:
         return in_file
     return _given(given, source, has_other=in_file is not None)

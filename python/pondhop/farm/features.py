@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from unicodedata import category
@@ -12,6 +12,7 @@ from unicodedata import category
 from pondhop.errors import Fault
 from pondhop.farm.vocabulary import column_words
 from pondhop.places import LonLat
+from pondhop.units import counted
 
 Positions = list[LonLat]
 
@@ -68,6 +69,8 @@ class Feature:
         What the format calls the way it is drawn, which people name too: the style of a placemark.
     doubts
         What was guessed about its position while reading, a sentence each; only its owner can tell whether it is right.
+    is_hidden
+        Whether its owner had unticked it, or a folder around it, in the map program.
     """
 
     place: str
@@ -78,6 +81,7 @@ class Feature:
     folders: tuple[str, ...] = ()
     style: str = ""
     doubts: list[str] = field(default_factory=list)
+    is_hidden: bool = False
 
     def find(self, *names: str) -> tuple[str, object] | None:
         """The first property that is there under one of the names, as the file spells it, and its value.
@@ -235,6 +239,12 @@ def listed(names: Iterable[str], max_names: int = 5) -> str:
     told = list(names)
     more = f" and {len(told) - max_names} more" if len(told) > max_names else ""
     return ", ".join(told[:max_names]) + more
+
+
+def left_out_note(why: str, features: Sequence[Feature]) -> str:
+    """The note about features that were left out: why, which ones, and how many."""
+    count = f": {counted(len(features), 'feature')} in all" if len(features) > 1 else ""
+    return f"Left out, because {why}: {listed(feature.told() for feature in features)}{count}."
 
 
 def number_of(value: object) -> float | None:

@@ -127,6 +127,9 @@ def read_geometry(place: str, value: object, geometry: Geometry, faults: list[Fa
     if not isinstance(value, dict) or not isinstance(kind, str) or kind not in _DEPTHS:
         faults.append(Fault(place, f"{shown(kind or value)} is no geometry", "use a Polygon or a Point"))
         return
+    if value.get("coordinates") == []:
+        # Nothing drawn, as RFC 7946 (3.1) has it.
+        return
     coordinates = _positions(f"{place}.coordinates", value.get("coordinates"), _DEPTHS[kind], faults)
     if coordinates is None:
         return

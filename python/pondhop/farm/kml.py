@@ -7,11 +7,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 from pondhop.errors import Fault
 from pondhop.farm.features import Feature, Geometry, Positions, Source, listed, shortened
 from pondhop.farm.xml_tree import text_in
+
+_HIDDEN = {"0", "false"}
+"""What ``visibility`` says of what is unticked."""
 
 _OVERLAYS = {"GroundOverlay", "PhotoOverlay", "ScreenOverlay"}
 
@@ -21,25 +25,35 @@ def read_kml(root: Element, source: Source) -> None:
     document = root.find("Document")
     source.name = (text_in(document, "name") if document is not None else "") or source.name
     others: dict[str, list[str]] = {"overlay": [], "link": []}
-    for number, (element, folders) in enumerate(_placemarks(root, (), others), start=1):
-        _read_placemark(f"placemark {number}", element, folders, source)
+    for number, (element, around) in enumerate(_placemarks(root, others), start=1):
+        _read_placemark(f"placemark {number}", element, around, source)
     if others["overlay"]:
-        source.notes.add(f"Left out, because a picture is no pond: overlay {listed(others['overlay'])}.")
+        overlays = "overlay" if len(others["overlay"]) == 1 else f"{len(others['overlay'])} overlays"
+        source.notes.add(f"Left out, because a picture is no pond: {overlays} {listed(others['overlay'])}.")
     if others["link"] and not source.features and not source.faults:
         message = f"the file holds only a link to the web, {others['link'][0]}"
         action = "export the map again without 'network link', so that the file holds the ponds themselves"
         source.faults.append(Fault("file", message, action))
     elif others["link"]:
-        source.notes.add(f"Left out, because it is a link to the web: {listed(others['link'])}.")
+        they_are = "it is a link" if len(others["link"]) == 1 else f"they are {len(others['link'])} links"
+        source.notes.add(f"Left out, because {they_are} to the web: {listed(others['link'])}.")
 
 
-def _placemarks(
-    element: Element, folders: tuple[str, ...], others: dict[str, list[str]]
-) -> Iterator[tuple[Element, tuple[str, ...]]]:
-    """Placemarks with the folders around them; whatever else can be seen on a map goes to `others`."""
-    stack: list[tuple[Element, tuple[str, ...]]] = [(element, folders)]
+class _Around(NamedTuple):
+    """What stands around an element: the names of its folders, and whether one of them is hidden, or the element."""
+
+    folders: tuple[str, ...] = ()
+    is_hidden: bool = False
+
+
+def _placemarks(root: Element, others: dict[str, list[str]]) -> Iterator[tuple[Element, _Around]]:
+    """Placemarks with what is around them; whatever else can be seen on a map goes to `others`."""
+    stack: list[tuple[Element, _Around]] = [(root, _Around())]
     while stack:
         node, around = stack.pop()
+        # A placemark is seen if it and every folder around it are ticked.
+        if text_in(node, "visibility").casefold() in _HIDDEN:
+            around = around._replace(is_hidden=True)
         if node.tag == "Placemark":
             yield node, around
             continue
@@ -48,11 +62,11 @@ def _placemarks(
         elif node.tag == "NetworkLink":
             others["link"].append(repr(shortened(text_in(node, "name", "href"))))
         name = text_in(node, "name") if node.tag == "Folder" else ""
-        inner = (*around, name) if name else around
+        inner = around._replace(folders=(*around.folders, name)) if name else around
         stack.extend((child, inner) for child in reversed(node) if child.tag not in {"Style", "StyleMap", "Schema"})
 
 
-def _read_placemark(place: str, element: Element, folders: tuple[str, ...], source: Source) -> None:
+def _read_placemark(place: str, element: Element, around: _Around, source: Source) -> None:
     properties: dict[str, object] = {}
     for data in element.iter("Data"):
         properties[data.get("name", "")] = text_in(data, "value")
@@ -69,7 +83,16 @@ def _read_placemark(place: str, element: Element, folders: tuple[str, ...], sour
         return
     style = text_in(element, "styleUrl").lstrip("#")
     source.features.append(
-        Feature(place, f"{place}, {{}}", properties, geometry, element.get("id"), folders=folders, style=style)
+        Feature(
+            place,
+            f"{place}, {{}}",
+            properties,
+            geometry,
+            element.get("id"),
+            folders=around.folders,
+            style=style,
+            is_hidden=around.is_hidden,
+        )
     )
 
 

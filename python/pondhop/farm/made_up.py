@@ -22,6 +22,7 @@ from pondhop.farm.coordinates import MAX_LATITUDE_DEG
 from pondhop.farm.model import Farm, Pond
 from pondhop.farm.shapes import point_inside
 from pondhop.places import LonLat
+from pondhop.units import counted
 
 MAX_PONDS = 5_000
 """Such a farm is 18 km wide; nobody has one."""
@@ -105,7 +106,7 @@ def generate_farm(
         outline = ((*lonlats, lonlats[0]),)
         lon, lat = point_inside(outline)
         ponds.append(Pond(str(number), (round(lon, 7), round(lat, 7)), outline))
-    return Farm(f"Delta farm of {num_ponds} ponds (made up, seed {seed})", tuple(ponds), at)
+    return Farm(f"Delta farm of {counted(num_ponds, 'pond')} (made up, seed {seed})", tuple(ponds), at)
 
 
 def _check(num_ponds: int, at: LonLat, missing_share: float) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from pondhop._core import LocalFrame, Problem
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
+from pondhop.farm.shapes import hole_around
 from pondhop.fleet import Fleet
 from pondhop.places import Area, LonLat
 
@@ -84,6 +85,19 @@ class Farm:
     fences: tuple[Area, ...] = ()
     notes: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
+
+    @property
+    def kept_out(self) -> tuple[Area, ...]:
+        """Areas that no drone enters, as autopilots can be told: no-fly zones, and the holes of fences.
+
+        Autopilots store areas without holes. So what lies in the hole of a no-fly zone is kept out of with the zone,
+        unless the depot lies in that hole, the only one that an area then has: drones stay inside of it.
+        """
+        zones = []
+        for area in self.no_fly:
+            home = hole_around(self.depot, area)
+            zones.append(area[:1] if home is None else (area[0], home))
+        return (*zones, *((hole,) for _, *holes in self.fences for hole in holes))
 
     def to_problem(self, fleet: Fleet, *, are_layers_stacked: bool = False) -> Problem:
         """The planning task in metres, in the local frame whose origin is the depot.

@@ -19,8 +19,12 @@ from pondhop.farm.features import (
 )
 from pondhop.farm.ponds import Draft
 from pondhop.farm.roles import KIND_COLUMNS, OSM_KEYS, POND_COLUMNS, ROLE_COLUMNS
-from pondhop.farm.words import is_plain_word, is_unnamed
+from pondhop.farm.vocabulary import column_words
+from pondhop.farm.words import heading_words, is_plain_word, is_unnamed
 from pondhop.places import distance_m
+
+_CODE_WORDS = frozenset(column_words("codes"))
+"""Words in headings of columns of numbers that people call a place by."""
 
 _PREFERRED = ("id", "pond_id", "pond", "pond_name", "pond_no", "name", "label")
 """Columns that hold ids, the first one best; then those of other languages, in the order of the file."""
@@ -77,6 +81,11 @@ def _columns(features: Sequence[Feature]) -> list[str]:
     return list(dict.fromkeys([*(key for key in preferred if key in in_file), *of_ponds, *of_names]))
 
 
+def _heading(features: Sequence[Feature], column: str) -> str:
+    """A column as the file spells it."""
+    return next((found[0] for feature in features if (found := feature.find(column)) is not None), column)
+
+
 def _value(feature: Feature, column: str) -> str:
     found = feature.find(column)
     if found is None or isinstance(found[1], dict | list):
@@ -99,9 +108,11 @@ def _ids(features: Sequence[Feature], source: Source) -> dict[int, str]:
             for column in columns[: columns.index(telling) if telling in columns else None]
             if any(values[column])
         ]
-        if passed:
-            why = f"column {passed[0]!r} does not tell them apart"
-            source.notes.add(f"The ponds are named by column {telling!r}, because {why}.")
+        if passed or telling not in columns:
+            why = "no column is known to hold names"
+            if passed:
+                why = f"column {_heading(features, passed[0])!r} does not tell them apart"
+            source.notes.add(f"The ponds are named by column {_heading(features, telling)!r}, because {why}.")
         return {id(feature): value for feature, value in zip(features, values[telling], strict=True)}
     own = [feature.own_id or "" for feature in features]
     programs = ([_value(feature, normal_name(name)) for feature in features] for name in _PROGRAM_COLUMNS)
@@ -125,17 +136,22 @@ def _tells_apart(values: Sequence[str]) -> bool:
 
 
 def _other_columns(features: Sequence[Feature], columns: Sequence[str]) -> Iterator[str]:
-    """Columns of short texts of any other name that tell the features apart, in the order of the file."""
+    """Columns of any other name that tell the features apart: short texts, then numbers under a heading for codes."""
     left_out = {*columns, *map(normal_name, (*ROLE_COLUMNS, *_PROGRAM_COLUMNS)), "services", "samplingpoint"}
+    codes: list[str] = []
     for key in dict.fromkeys(key for feature in features for key in feature.properties):
         values = [feature.properties.get(key) for feature in features]
-        is_text = all(
-            isinstance(value, str) and not is_blank(value) and len(value) <= MAX_ID_LETTERS for value in values
+        is_short = all(
+            isinstance(value, str | int) and not is_blank(value) and len(str(value)) <= MAX_ID_LETTERS
+            for value in values
         )
-        if normal_name(key) not in left_out and is_text and _tells_apart([text_of(value) for value in values]):
-            has_letters = all(any(letter.isalpha() for letter in text_of(value)) for value in values)
-            if has_letters:
-                yield normal_name(key)
+        if normal_name(key) in left_out or not is_short or not _tells_apart([text_of(value) for value in values]):
+            continue
+        if all(isinstance(value, str) and any(letter.isalpha() for letter in value) for value in values):
+            yield normal_name(key)
+        elif _CODE_WORDS.intersection(heading_words(key)):
+            codes.append(normal_name(key))
+    yield from codes
 
 
 def _number_unnamed(drafts: Sequence[Draft], source: Source) -> None:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from pondhop.errors import Fault
 from pondhop.farm import shapes
 from pondhop.farm.coordinates import MAX_LATITUDE_DEG, exchanged
-from pondhop.farm.features import Feature, Positions, Source, listed, number_of, shortened
+from pondhop.farm.features import Feature, Source, left_out_note, listed, number_of, shortened
 from pondhop.farm.neighbourhoods import MAX_GAP_M
 from pondhop.farm.roles import ROLE_COLUMNS, Sorted
 from pondhop.farm.words import Meaning, meanings
-from pondhop.places import Area, LonLat, distance_m, unrolled_longitude, wrapped_longitude
+from pondhop.places import Area, LonLat, distance_m, wrapped_longitude
+from pondhop.units import counted
 
 MAX_SAMPLING_OFFSET_M = 1_000.0
 """A sampling point further outside its pond than this is a typing error, not a shore."""
@@ -23,11 +23,11 @@ MAX_SERVICE_S = 86_400.0
 DWARFED_SHARE = 0.05
 """A part of a pond below this share of the largest is a corner of it, not a pond of its own."""
 
+FILLED_SHARE = 0.8
+"""A pond that takes more of a hole than this share is what the hole was cut out for."""
+
 SLIVER_SHARE, SLIVER_M2 = 0.001, 10.0
 """A part below both is an error of drawing."""
-
-CLOSING_SHARE = 0.05
-"""A walk that ends within this share of its length from its start went around something."""
 
 
 @dataclass
@@ -66,20 +66,21 @@ def read_ponds(told: Sorted, source: Source) -> list[Draft]:
     outlines: dict[int, list[Draft]] = {}
     points: dict[int, Feature] = {}
     open_lines: list[Feature] = []
+    blank: list[Feature] = []
     order = {id(feature): index for index, feature in enumerate(told.ponds)}
     for feature in told.ponds:
         geometry = feature.geometry
-        if geometry.polygons or any(_closed_line(line) for line in geometry.lines):
+        if geometry.polygons or any(shapes.closed_line(line) for line in geometry.lines):
             outlines[order[id(feature)]] = _from_outlines(feature, source)
-        elif geometry.lines:
-            open_lines.append(feature)
         elif geometry.points:
             points[order[id(feature)]] = feature
+            _tell_lines_beside(feature, len(geometry.lines), source)
+        elif geometry.lines:
+            open_lines.append(feature)
         else:
-            source.faults.append(
-                Fault(feature.place, "the feature has no geometry", "draw each pond as one polygon or point")
-            )
+            blank.append(feature)
     _tell_open_lines(open_lines, told, source, has_ponds=bool(outlines or points))
+    _tell_blank(blank, told, source, has_ponds=bool(outlines or points))
     drafts = [draft for made in outlines.values() for draft in made]
     drafts = _without_surrounding(drafts, list(points.values()), source)
     kept = {id(draft) for draft in drafts}
@@ -150,7 +151,9 @@ def _parts(feature: Feature, areas: list[Area], source: Source) -> list[Area]:
     if len(large) == 1:
         source.notes.add(f"{feature.place}: the pond has {len(ponds)} parts; the largest is sampled.", kind="parts")
         return large
-    small = f"; {len(ponds) - len(large)} small parts were left out" if len(ponds) > len(large) else ""
+    num_small = len(ponds) - len(large)
+    were = "part was" if num_small == 1 else "parts were"
+    small = f"; {num_small} small {were} left out" if num_small else ""
     source.notes.add(
         f"{feature.told()}: its {len(large)} parts are {len(large)} ponds, numbered{small}.", kind="ponds of parts"
     )
@@ -185,8 +188,12 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
         Whether parts that enclose nothing are dropped where another part is good: a sliver refuses no pond.
     """
     polygons = [*feature.geometry.polygons]
+    num_beside = 0
     for line in feature.geometry.lines:
-        closed = _closed_line(line)
+        closed = shapes.closed_line(line)
+        if closed is None and feature.geometry.polygons:
+            num_beside += 1
+            continue
         if closed is None:
             action = "draw it as a polygon, or close the line"
             source.faults.append(Fault(feature.place, f"an open line is not {what}", action))
@@ -195,6 +202,7 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
         gap_m = distance_m(line[0], line[-1])
         if gap_m > 0.0:
             source.notes.add(f"{feature.told()}: the line was closed over the last {gap_m:.1f} m.", kind="closed lines")
+    _tell_lines_beside(feature, num_beside, source)
     if not polygons and not feature.geometry.lines:
         message = f"without an outline this is not {what}"
         source.faults.append(Fault(feature.place, message, "draw it as a polygon"))
@@ -209,7 +217,7 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
             valid.append(mended)
         if fault is not None:
             faults.append(fault)
-    slivers = [fault for fault in faults if "no area" in fault.message or "different corners" in fault.message]
+    slivers = [fault for fault in faults if "no area" in fault.message or "different corner" in fault.message]
     if valid and may_mend and len(slivers) == len(faults):
         if faults:
             told = f"{len(faults)} slivers of it were" if len(faults) > 1 else "a sliver of it was"
@@ -217,22 +225,6 @@ def areas_of(feature: Feature, what: str, source: Source, *, may_mend: bool = Fa
     else:
         source.faults.extend(faults)
     return valid
-
-
-def _closed_line(line: Positions) -> Positions | None:
-    """The ring of a line that goes around something: it ends where it began, or nearly so."""
-    if len(line) <= 3:
-        return None
-    if line[0] == line[-1]:
-        return line
-    lons = [unrolled_longitude(lon, line[0][0]) for lon, _ in line]
-    shrink = math.cos(math.radians(line[0][1]))
-    steps = [
-        math.hypot((lons[index + 1] - lons[index]) * shrink, line[index + 1][1] - line[index][1])
-        for index in range(len(line) - 1)
-    ]
-    gap = math.hypot((lons[-1] - lons[0]) * shrink, line[-1][1] - line[0][1])
-    return [*line, line[0]] if gap <= CLOSING_SHARE * sum(steps) else None
 
 
 def _tell_open_lines(lines: list[Feature], told: Sorted, source: Source, *, has_ponds: bool) -> None:
@@ -246,30 +238,57 @@ def _tell_open_lines(lines: list[Feature], told: Sorted, source: Source, *, has_
             source.faults.append(Fault(feature.place, "an open line is not a pond", action))
     if left_out:
         what = "lines are no ponds" if len(left_out) > 1 else "a line is no pond"
-        source.notes.add(f"Left out, because {what}: {listed(feature.told() for feature in left_out)}.")
+        source.notes.add(left_out_note(what, left_out))
+
+
+def _tell_lines_beside(feature: Feature, num_lines: int, source: Source) -> None:
+    """Lines drawn together with an outline or a point are inlets and levees, which nobody samples."""
+    if num_lines:
+        were = "an open line drawn with it was" if num_lines == 1 else f"{num_lines} open lines drawn with it were"
+        source.notes.add(f"{feature.told()}: {were} left out.", kind="lines beside")
+
+
+def _tell_blank(blank: list[Feature], told: Sorted, source: Source, *, has_ponds: bool) -> None:
+    """Features without a place: a fault of what is a pond for certain, else a line of a table that was never drawn."""
+    remarks = [feature for feature in blank if has_ponds and feature.place not in told.sure]
+    for feature in blank:
+        if feature not in remarks:
+            action = "draw each pond as one polygon or point"
+            source.faults.append(Fault(feature.place, "the feature has no geometry", action))
+    if remarks:
+        what = "nothing of them was drawn" if len(remarks) > 1 else "nothing of it was drawn"
+        source.notes.add(left_out_note(what, remarks))
 
 
 def _without_surrounding(drafts: list[Draft], pins: list[Feature], source: Source) -> list[Draft]:
     """The ponds without outlines drawn around several others, which are farms or blocks: a fault each.
 
-    A property ``role`` says that one is a pond all the same. Single ponds within ponds stay: islands have ponds.
+    A property ``role`` says that one is a pond all the same. Single ponds within ponds stay, and so do ponds in holes:
+    islands have ponds. Only where several holes are cut out for one pond each, the land around them was drawn.
     """
     outlines = [draft.outline for draft in drafts]
     points = [draft.sampling_point for draft in drafts]
     within: dict[int, int] = {}
     sizes_m2 = [draft.area_m2 for draft in drafts]
+    cut_out: dict[int, int] = {}
     for inner, outer in shapes.places_within(points, outlines):
-        if inner != outer and sizes_m2[inner] < sizes_m2[outer]:
+        if inner == outer:
+            continue
+        hole = shapes.hole_around(points[inner], outlines[outer])
+        if hole is not None:
+            is_filled = sizes_m2[inner] > FILLED_SHARE * shapes.area_m2((hole,))
+            cut_out[outer] = cut_out.get(outer, 0) + is_filled
+        elif sizes_m2[inner] < sizes_m2[outer]:
             within[outer] = within.get(outer, 0) + 1
     pin_points = [point for pin in pins if len(pin.geometry.points) == 1 for point in pin.geometry.points]
     pins_in: dict[int, int] = {}
-    for _, outer in shapes.places_within(pin_points, outlines):
+    for _, outer in shapes.places_inside(pin_points, outlines):
         pins_in[outer] = pins_in.get(outer, 0) + 1
     surrounding: set[int] = set()
     for index, draft in enumerate(drafts):
         if draft.feature.find(*ROLE_COLUMNS):
             continue
-        num_ponds, num_pins = within.get(index, 0), pins_in.get(index, 0)
+        num_ponds, num_pins = max(within.get(index, 0), cut_out.get(index, 0)), pins_in.get(index, 0)
         if num_ponds >= 2 or (num_pins >= 3 and 2 * num_pins > len(pin_points)):
             surrounding.add(index)
             held = f"{num_ponds} other ponds" if num_ponds >= 2 else f"{num_pins} points"
@@ -295,7 +314,7 @@ def _from_points(
     for index, feature in points.items():
         is_explicit = feature.find(*ROLE_COLUMNS) is not None
         owner = owners.get(index)
-        if owner is not None and not is_explicit:
+        if owner is not None and not is_explicit and not _is_on_island(feature, owner, told):
             _use_pin(feature, owner, labels, source)
         elif outlines and not is_explicit and feature.place not in told.sure:
             if Meaning.SAMPLING in meanings(feature.name):
@@ -305,15 +324,13 @@ def _from_points(
         else:
             made[index] = _from_point(feature, source)
     if labels:
-        source.notes.add(
-            f"Left out, because points in or beside ponds that are outlines are labels: "
-            f"{listed(feature.told() for feature in labels)}."
-        )
+        source.notes.add(left_out_note("points in or beside ponds that are outlines are labels", labels))
     if doubtful:
         names = listed(feature.told() for feature in doubtful)
-        message = f"is this a pond? a point among {len(outlines)} outlines"
+        among = counted(len(outlines), "outline")
+        message = f"is this a pond? a point among {among}"
         if len(doubtful) > 1:
-            message = f"are these ponds? {len(doubtful)} points among {len(outlines)} outlines: {names}"
+            message = f"are these ponds? {len(doubtful)} points among {among}: {names}"
         action = (
             "remove them, or put 'pond' into the names of those that are; or say it in a property role: pond or other"
         )
@@ -321,11 +338,19 @@ def _from_points(
     return made
 
 
+def _is_on_island(feature: Feature, owner: Draft, told: Sorted) -> bool:
+    """Whether a point in the hole of a pond is a pond of its own: called so, and not as the pond around it is."""
+    if feature.place not in told.sure or feature.name == owner.feature.name:
+        return False
+    return shapes.hole_around(feature.geometry.points[0], owner.outline) is not None
+
+
 def _use_pin(feature: Feature, owner: Draft, labels: list[Feature], source: Source) -> None:
     """A point in a pond: where it is sampled if its name says so, else a label."""
     point = feature.geometry.points[0]
     is_sampling_point = Meaning.SAMPLING in meanings(feature.name) and owner.feature.find("sampling_point") is None
-    if is_sampling_point and not owner.part:
+    is_in_water = shapes.hole_around(point, owner.outline) is None
+    if is_sampling_point and is_in_water and not owner.part:
         owner.sampling_point = point
         source.notes.add(f"{feature.told()} is where {owner.feature.told()} is sampled.", kind="sampling points")
     else:

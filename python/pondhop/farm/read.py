@@ -17,12 +17,13 @@ from pondhop.farm.distances import ponds_of_one_farm
 from pondhop.farm.faults import told_faults
 from pondhop.farm.features import Feature, Source, clean_text, listed, shortened
 from pondhop.farm.formats import read_source
+from pondhop.farm.meridian import join_at_meridian
 from pondhop.farm.model import Doubt, Farm, Pond
 from pondhop.farm.names import adopt_names, name_ponds
 from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
-from pondhop.farm.roles import Sorted, sort_by_role
+from pondhop.farm.roles import Sorted, are_numbered_stations, no_pond_fault, sort_by_role
 from pondhop.places import Area, LonLat
 
 ACCEPT_ALL = "all"
@@ -33,6 +34,9 @@ MIN_WIDTH_M = 2.0
 
 MAX_NARROW_M = 10.0
 """An outline whose area is larger than its diagonal times this has room enough, and is not measured."""
+
+SAME_PLACE_M = 1.0
+"""Two ponds have room for nothing if their points lie nearer than this."""
 
 MIN_FENCED_SHARE = 0.9
 """Of the ponds must lie in an area for it to be taken as a fence by its name alone."""
@@ -78,12 +82,11 @@ def read_farm(
         told = _sorted(source)
         drafts = read_ponds(told, source)
         if not drafts and features and not source.faults:
-            fault = Fault("file", "there is no pond in this file", "add the ponds as polygons or points")
-            source.faults.append(fault)
+            source.faults.append(no_pond_fault(told))
         name_ponds(drafts, source)
         found_depot = depot_of(told, depot, source)
         stations = [point for feature in told.stations if (point := point_of(feature, "station", source)) is not None]
-        no_fly, fences = _areas(told, drafts, source)
+        no_fly, fences = _areas(told, drafts, found_depot, source)
         doubts = [*_doubts(drafts, source), *_told_odd(drafts, told, source)]
         drafts = ponds_of_one_farm(
             drafts,
@@ -99,8 +102,11 @@ def read_farm(
         raise InvalidInput(told_faults(source.faults, features))
     if stations:
         are = "station is" if len(stations) == 1 else "stations are"
-        source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet.")
+        names = listed(feature.told() for feature in told.stations)
+        hint = " To sample there, give them the role pond." if are_numbered_stations(told.stations) else ""
+        source.notes.add(f"{len(stations)} {are} in the file; plans do not use stations yet: {names}.{hint}")
     ids = [draft.id for draft in drafts]
+    known = set(ids)
     return Farm(
         clean_text(source.name) or "farm",
         tuple(Pond(draft.id, draft.sampling_point, draft.outline, draft.service_s) for draft in drafts),
@@ -109,7 +115,7 @@ def read_farm(
         tuple(no_fly),
         tuple(fences),
         source.notes.sentences(),
-        _without_accepted([doubt for doubt in doubts if doubt.pond_id in ids], _accepted_ids(accept, ids)),
+        _without_accepted([doubt for doubt in doubts if doubt.pond_id in known], _accepted_ids(accept, ids)),
     )
 
 
@@ -141,10 +147,14 @@ def _sorted(source: Source) -> Sorted:
         has_depot_feature = sort_by_role(source.features, Source(source.name)).has_depot_feature
         return Sorted(has_depot_feature=has_depot_feature)
     misplaced_places = {fault.path for fault in misplaced}
-    return sort_by_role((feature for feature in source.features if feature.place not in misplaced_places), source)
+    placed = [feature for feature in source.features if feature.place not in misplaced_places]
+    join_at_meridian(placed, source.notes)
+    return sort_by_role(placed, source)
 
 
-def _areas(told: Sorted, drafts: Sequence[Draft], source: Source) -> tuple[list[Area], list[Area]]:
+def _areas(
+    told: Sorted, drafts: Sequence[Draft], depot: LonLat | None, source: Source
+) -> tuple[list[Area], list[Area]]:
     """No-fly areas and fences; those told by name alone must make sense: ponds outside of the one, inside the other."""
     points = [draft.sampling_point for draft in drafts]
     areas: dict[str, list[Area]] = {"no_fly": [], "fence": []}
@@ -152,11 +162,28 @@ def _areas(told: Sorted, drafts: Sequence[Draft], source: Source) -> tuple[list[
         for feature in features:
             found = areas_of(feature, f"a {role} area", source)
             if feature.place in told.guessed and points and found:
-                inside = len({index for index, _ in shapes.places_within(points, found)}) / len(points)
+                inside = len({index for index, _ in shapes.places_inside(points, found)}) / len(points)
                 if inside > 0.5 if role == "no_fly" else inside < MIN_FENCED_SHARE:
                     _tell_misnamed(feature, role, inside, source)
             areas[role].extend(found)
+            for area in found:
+                _tell_holes(feature, role, area, depot, source)
     return areas["no_fly"], areas["fence"]
+
+
+def _tell_holes(feature: Feature, role: str, area: Area, depot: LonLat | None, source: Source) -> None:
+    """Note what becomes of the holes of an area, of which autopilots know nothing; see `Farm.kept_out`."""
+    num_holes = len(area) - 1
+    if not num_holes:
+        return
+    holes = "its hole is" if num_holes == 1 else f"its {num_holes} holes are"
+    if role == "fence":
+        told = f"{holes} kept out of, as {'a no-fly zone' if num_holes == 1 else 'no-fly zones'}"
+    elif depot is not None and shapes.hole_around(depot, area) is not None:
+        told = "the depot lies in a hole of it, and drones stay inside that hole"
+    else:
+        told = f"{holes} kept out of too, because autopilots store no-fly zones without holes"
+    source.notes.add(f"{feature.told()}: {told}.", kind=f"holes of {role}")
 
 
 def _tell_misnamed(feature: Feature, role: str, inside: float, source: Source) -> None:
@@ -178,12 +205,13 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     outside = [offset for offset in offsets if offset[0] > 0.0]
     if outside:
         offset_m, place = max(outside)
+        lie = "sampling point lies" if len(outside) == 1 else "sampling points lie"
+        whose, furthest = ("its pond", "") if len(outside) == 1 else ("their pond", "the furthest ")
         source.notes.add(
-            f"{len(outside)} sampling points lie outside the outline of their pond, "
-            f"the furthest by {offset_m:.1f} m ({place})."
+            f"{len(outside)} {lie} outside the outline of {whose}, {furthest}by {offset_m:.1f} m ({place})."
         )
     points, outlines = [draft.sampling_point for draft in drafts], [draft.outline for draft in drafts]
-    for inner, outer in shapes.places_within(points, outlines):
+    for inner, outer in shapes.places_inside(points, outlines):
         if inner == outer:
             continue
         told = f"the sampling point of pond {drafts[inner].id} lies in pond {drafts[outer].id}"
@@ -192,6 +220,19 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
             kind="ponds in ponds",
         )
         doubts.append(Doubt(drafts[inner].id, f"{drafts[inner].feature.place}: {told}"))
+    doubts.extend(_at_one_place(drafts, source))
+    return doubts
+
+
+def _at_one_place(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
+    """Ponds given as points that lie where another one does: of one of them the place is a copy."""
+    single = [draft for draft in drafts if not draft.outline]
+    doubts = []
+    for first, second in shapes.places_together([draft.sampling_point for draft in single], SAME_PLACE_M):
+        one, other = single[first], single[second]
+        told = f"pond {other.id} lies where pond {one.id} lies ({one.feature.place})"
+        source.notes.add(f"{other.feature.place}: {told}; correct one of the two.", kind="ponds at one place")
+        doubts.append(Doubt(other.id, f"{other.feature.place}: {told}"))
     return doubts
 
 
@@ -219,7 +260,8 @@ def _told_odd(drafts: Sequence[Draft], told: Sorted, source: Source) -> list[Dou
 
 
 def _without_accepted(doubts: Sequence[Doubt], accept: Sequence[str]) -> tuple[Doubt, ...]:
-    return tuple(doubt for doubt in doubts if doubt.pond_id not in accept)
+    accepted = set(accept)
+    return tuple(doubt for doubt in doubts if doubt.pond_id not in accepted)
 
 
 def _accepted_ids(accept: Sequence[str], ids: Sequence[str]) -> list[str]:

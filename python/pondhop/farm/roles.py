@@ -7,13 +7,26 @@ In doubt a feature is a fault that names it: a pond too few is told, a building 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from pondhop.errors import Fault
-from pondhop.farm.features import Feature, Source, is_blank, listed, normal_name, present_columns
-from pondhop.farm.vocabulary import column_words
-from pondhop.farm.words import Meaning, is_unnamed, meanings
+from pondhop.farm.features import (
+    Feature,
+    Source,
+    clean_text,
+    is_blank,
+    left_out_note,
+    listed,
+    normal_name,
+    present_columns,
+    shortened,
+    text_of,
+)
+from pondhop.farm.shapes import closed_line
+from pondhop.farm.vocabulary import column_words, pond_like_words
+from pondhop.farm.words import Meaning, is_unnamed, meanings, series_of, word_for
+from pondhop.units import counted
 
 ROLES = ("pond", "depot", "station", "no_fly", "fence", "other")
 """What a feature can be, in the property ``role``; the first is the default."""
@@ -46,6 +59,26 @@ OSM_KEYS = (*_OSM_OTHER, *_OSM_VALUES)
 """Tags of OpenStreetMap that say what a feature is, not what it is called."""
 
 
+MIN_SERIES = 2
+"""Numbered points of one word such as station that make a series."""
+
+MAX_CODE_LETTERS = 2
+"""Letters that count as a number: Station A, Station NE."""
+
+MAX_TOLD = 10
+"""Features of one kind that are named where none is a pond."""
+
+_TAKEN_FOR = {
+    Meaning.DEPOT: "the depot",
+    Meaning.START: "a place to take off from",
+    Meaning.STATION: "a station of the drones",
+    Meaning.NO_FLY: "a no-fly area",
+    Meaning.FENCE: "a fence",
+    Meaning.BOUNDARY: "a boundary of land",
+    Meaning.OTHER: "something beside ponds",
+}
+
+
 @dataclass
 class Sorted:
     """The features of a file by what they are.
@@ -60,6 +93,10 @@ class Sorted:
         The rest of what a plan uses; `starts` may be the depot, as "Home" may.
     guessed
         Places of areas that were told by their name alone.
+    has_depot_feature
+        Whether any feature is the depot, wherever it lies.
+    others
+        All that is no pond, with what says so.
     """
 
     ponds: list[Feature] = field(default_factory=list)
@@ -71,14 +108,30 @@ class Sorted:
     fences: list[Feature] = field(default_factory=list)
     guessed: set[str] = field(default_factory=set)
     has_depot_feature: bool = False
+    others: list[tuple[Feature, Verdict]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
-class _Verdict:
-    """What a feature is and what says so."""
+class Verdict:
+    """What a feature is and what says so.
+
+    Attributes
+    ----------
+    meaning
+        What it is; ``None`` for what nothing is said of, which may be a pond.
+    because
+        What says so, for messages: ``it is called 'Office'``.
+    text
+        The text that was read for words: its name, kind or folder.
+    is_explicit
+        Whether it has a role.
+    is_doubtful
+        Whether its words contradict each other.
+    """
 
     meaning: Meaning | None
     because: str = ""
+    text: str = ""
     is_explicit: bool = False
     is_doubtful: bool = False
 
@@ -89,14 +142,14 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     left_out: dict[Meaning, list[Feature]] = {Meaning.OTHER: [], Meaning.BOUNDARY: []}
     doubtful: list[tuple[Feature, str]] = []
     has_layers = len({feature.folders for feature in source.features}) > 1
-    for feature in features:
-        verdict = _verdict(feature, has_layers, source)
-        if verdict is None:
-            continue
+    verdicts = [(feature, _verdict(feature, has_layers, source)) for feature in features]
+    judged = [(feature, verdict) for feature, verdict in verdicts if verdict is not None]
+    for feature, verdict in _with_series(judged, source):
         if verdict.is_doubtful or (verdict.meaning is Meaning.UNCERTAIN and not _is_declared(feature)):
             doubtful.append((feature, verdict.because))
             continue
         _file(feature, verdict, told, left_out, source)
+    _leave_hidden(told, source)
     _tell_left_out(left_out, told, doubtful, source)
     for feature, because in doubtful:
         message = f"is this a pond? {because}"
@@ -105,10 +158,115 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     return told
 
 
+def _leave_hidden(told: Sorted, source: Source) -> None:
+    """Leave out the ponds that were unticked in the map program, as they are left out of its map, and say so.
+
+    What keeps drones safe counts, seen or not. Where no pond is seen, the whole map was unticked, and all are taken.
+    """
+    hidden = [feature for feature in told.ponds if feature.is_hidden]
+    if hidden and len(hidden) == len(told.ponds):
+        ponds = "the only pond is" if len(hidden) == 1 else f"all {len(hidden)} ponds are"
+        source.notes.add(f"In the map program {ponds} hidden; taken all the same, because the file has no other pond.")
+    elif hidden:
+        told.ponds = [feature for feature in told.ponds if not feature.is_hidden]
+        are, them = ("it is", "it") if len(hidden) == 1 else ("they are", "them")
+        why = f"{are} hidden in the map program (to sample {them}, tick {them} there and save the map again)"
+        source.notes.add(left_out_note(why, hidden))
+    if any(not feature.is_hidden for feature in told.depots):
+        unused = [feature for feature in told.depots if feature.is_hidden]
+        told.depots = [feature for feature in told.depots if not feature.is_hidden]
+        if unused:
+            source.notes.add(left_out_note("another depot is the one that can be seen in the map program", unused))
+    areas = [feature for feature in (*told.no_fly, *told.fences) if feature.is_hidden]
+    if areas:
+        names = listed(feature.told() for feature in areas)
+        source.notes.add(f"Hidden in the map program and kept all the same, because drones must know of them: {names}.")
+
+
+def _with_series(judged: Sequence[tuple[Feature, Verdict]], source: Source) -> list[tuple[Feature, Verdict]]:
+    """What each feature is, where many numbered points of one word such as station are the ponds, if no others are.
+
+    Who measures at points calls them Station 1, Station 2, ...; one Station beside ponds is where drones charge.
+    """
+    seen = [(feature, verdict) for feature, verdict in judged if not feature.is_hidden] or judged
+    rivals = [(feature, verdict) for feature, verdict in seen if _may_be_pond(verdict)]
+    if any(_is_closed(feature) or verdict.meaning is Meaning.POND for feature, verdict in rivals):
+        return list(judged)
+    series: dict[str, list[Feature]] = {}
+    for feature, verdict in seen:
+        word = _series_word(feature, verdict)
+        if word is not None:
+            series.setdefault(word, []).append(feature)
+    if not series:
+        return list(judged)
+    word, members = max(series.items(), key=lambda item: len(item[1]))
+    if len(members) < max(MIN_SERIES, 1 + sum(_is_point(feature) for feature, _ in rivals)):
+        return list(judged)
+    source.notes.add(
+        f"{len(members)} points with the word {word!r} are taken as ponds, because no other feature is one: "
+        f"{listed(feature.told() for feature in members)}. A station of the drones has the role station."
+    )
+    places = {feature.place for feature in members}
+    return [(feature, Verdict(Meaning.POND) if feature.place in places else verdict) for feature, verdict in judged]
+
+
+def _may_be_pond(verdict: Verdict) -> bool:
+    return verdict.is_doubtful or verdict.meaning in {None, Meaning.POND, Meaning.UNCERTAIN}
+
+
+def _series_word(feature: Feature, verdict: Verdict) -> str | None:
+    """The word by which a point may be one of a series of sampling points."""
+    if verdict.is_explicit or not _is_point(feature) or _may_be_pond(verdict):
+        return None
+    series = series_of(verdict.text)
+    if series is None:
+        return None
+    word, others = series
+    is_code = bool(others) and all(len(other) <= MAX_CODE_LETTERS or other in pond_like_words() for other in others)
+    is_numbered = any(letter.isdigit() for letter in feature.name)
+    return word if is_numbered or is_code or verdict.text != feature.name else None
+
+
+def are_numbered_stations(stations: Sequence[Feature]) -> bool:
+    """Whether some places that were taken as stations are called as sampling points often are."""
+    return any(series_of(feature.name) and any(map(str.isdigit, feature.name)) for feature in stations)
+
+
+def no_pond_fault(told: Sorted) -> Fault:
+    """The fault that no feature is a pond: what each one was taken for, and the word that says so."""
+    groups: dict[tuple[str, str], list[Feature]] = {}
+    for feature, verdict in told.others:
+        if verdict.meaning is not None:
+            word = "its role" if verdict.is_explicit else f"the word {word_for(verdict.text, verdict.meaning)!r}"
+            groups.setdefault((_TAKEN_FOR[verdict.meaning], word), []).append(feature)
+    reasons = [
+        f"{counted(len(features), 'feature')} taken for {what} by {word}: "
+        f"{listed(map(_told_with_id, features), MAX_TOLD)}"
+        for (what, word), features in groups.items()
+    ]
+    held = f": {'; '.join(reasons)}" if reasons else ""
+    action = "give what is a pond the role pond, or a name such as 'Pond 7'"
+    if not reasons:
+        action = "add the ponds as polygons or points"
+    return Fault("file", f"there is no pond in this file{held}", action)
+
+
+def _told_with_id(feature: Feature) -> str:
+    """The name, id and place of a feature, for messages."""
+    found = feature.find("id")
+    own_id = clean_text(text_of(found[1])) if found else feature.own_id or ""
+    if not own_id or own_id == feature.name:
+        return feature.told()
+    named = f"{shortened(feature.name)!r} " if feature.name else ""
+    return f"{named}(id {shortened(own_id)}, {feature.place})"
+
+
 def _file(
-    feature: Feature, verdict: _Verdict, told: Sorted, left_out: dict[Meaning, list[Feature]], source: Source
+    feature: Feature, verdict: Verdict, told: Sorted, left_out: dict[Meaning, list[Feature]], source: Source
 ) -> None:
     meaning = verdict.meaning
+    if not _may_be_pond(verdict):
+        told.others.append((feature, verdict))
     if meaning in {Meaning.OTHER, Meaning.BOUNDARY}:
         if not verdict.is_explicit:
             left_out[meaning].append(feature)
@@ -144,19 +302,20 @@ def _tell_left_out(
     left_out: dict[Meaning, list[Feature]], told: Sorted, doubtful: list[tuple[Feature, str]], source: Source
 ) -> None:
     """Note what was left out; where that would be most of the outlines, the words mean something else here."""
-    num_outlines = sum(bool(feature.geometry.polygons) for feature in told.ponds)
+    # Where all ponds are points, outlines are what lies beside them.
+    num_outlines = sum(bool(feature.geometry.polygons) for feature in told.ponds) or len(told.ponds)
     for meaning, features in left_out.items():
         outlines = [feature for feature in features if feature.geometry.polygons]
-        if len(outlines) > max(1, num_outlines) and not any(feature.folders for feature in outlines):
+        is_most = 0 < num_outlines < len(outlines) and len(outlines) > 1
+        if is_most and not any(feature.folders for feature in outlines):
             doubtful.extend((feature, f"it is called {feature.name!r}") for feature in outlines if feature.name)
             features = [feature for feature in features if not feature.geometry.polygons or not feature.name]
         if features:
-            names = listed(feature.told() for feature in features)
             what = "they are no ponds by their names" if meaning is Meaning.OTHER else "they bound land, not water"
             if len(features) == 1:
                 what = "it is no pond by its name" if meaning is Meaning.OTHER else "it bounds land, not water"
             hint = "" if meaning is Meaning.OTHER else " To keep the drones inside, give it the role fence."
-            source.notes.add(f"Left out, because {what}: {names}.{hint}")
+            source.notes.add(f"{left_out_note(what, features)}{hint}")
 
 
 def _is_declared(feature: Feature) -> bool:
@@ -168,8 +327,7 @@ def _is_declared(feature: Feature) -> bool:
 
 
 def _is_closed(feature: Feature) -> bool:
-    lines = feature.geometry.lines
-    return bool(feature.geometry.polygons) or any(len(line) > 3 and line[0] == line[-1] for line in lines)
+    return bool(feature.geometry.polygons) or any(map(closed_line, feature.geometry.lines))
 
 
 _EXPLICIT = {
@@ -182,7 +340,7 @@ _EXPLICIT = {
 }
 
 
-def _verdict(feature: Feature, has_layers: bool, source: Source) -> _Verdict | None:
+def _verdict(feature: Feature, has_layers: bool, source: Source) -> Verdict | None:
     found = feature.find(*ROLE_COLUMNS)
     if found is not None:
         return _explicit(feature, *found, source)
@@ -191,23 +349,26 @@ def _verdict(feature: Feature, has_layers: bool, source: Source) -> _Verdict | N
     if name and not is_unnamed(name):
         first, said = _decided(name, is_line=_is_line(feature)), f"it is called {name!r}"
         if first is None and Meaning.SAMPLING in meanings(name):
-            return _Verdict(None)
+            return Verdict(None)
     hints = list(_hints(feature, has_layers))
-    second, hinted = next(((meaning, hint) for meaning, hint in hints if meaning is not None), (None, ""))
+    second, hinted, text = next((hint for hint in hints if hint[0] is not None), (None, "", ""))
     if first is Meaning.POND:
         if Meaning.NO_FLY in meanings(name) or second is Meaning.NO_FLY:
-            return _Verdict(None, said if second is not Meaning.NO_FLY else f"{said}, but {hinted}", is_doubtful=True)
+            because = said if second is not Meaning.NO_FLY else f"{said}, but {hinted}"
+            return Verdict(None, because, name, is_doubtful=True)
         if _is_point(feature) and {Meaning.OTHER, Meaning.START} & meanings(name):
-            return _Verdict(None, said, is_doubtful=True)
-        return _Verdict(first, said)
-    if first is Meaning.UNCERTAIN:
-        return _Verdict(second, hinted) if second is not None else _Verdict(first, said)
-    if first is not None:
-        return _Verdict(first, said)
-    return _Verdict(second, hinted)
+            return Verdict(None, said, name, is_doubtful=True)
+        return Verdict(first, said, name)
+    if first is Meaning.UNCERTAIN and second is None:
+        return Verdict(first, said, name)
+    if first is None or first is Meaning.UNCERTAIN:
+        return Verdict(second, hinted, text)
+    if feature.find(*_DECLARING_COLUMNS) and series_of(name) is not None:
+        return Verdict(Meaning.POND, said, name)
+    return Verdict(first, said, name)
 
 
-def _explicit(feature: Feature, key: str, value: object, source: Source) -> _Verdict | None:
+def _explicit(feature: Feature, key: str, value: object, source: Source) -> Verdict | None:
     meaning = _EXPLICIT.get(normal_name(str(value))) or _decided(str(value), is_line=False)
     if meaning is Meaning.START:
         meaning = Meaning.DEPOT
@@ -217,7 +378,7 @@ def _explicit(feature: Feature, key: str, value: object, source: Source) -> _Ver
         hint = f"did you mean {roles[close[0]]!r}?" if close else f"use one of {', '.join(ROLES)}"
         source.faults.append(Fault(feature.property_place.format(key), f"{str(value)[:40]!r} is no role", hint))
         return None
-    return _Verdict(meaning, is_explicit=True)
+    return Verdict(meaning, is_explicit=True)
 
 
 def _is_point(feature: Feature) -> bool:
@@ -245,38 +406,43 @@ _ORDER = (
 def _decided(text: str, *, is_line: bool) -> Meaning | None:
     found = meanings(text)
     decided = next((meaning for meaning in _ORDER if meaning in found), None)
+    if Meaning.SAMPLING in found and series_of(text) is not None:
+        # A station where samples are taken is none of the drones.
+        return None
     if decided is Meaning.OTHER and Meaning.DEPOT in found:
         return Meaning.START
     return Meaning.OTHER if is_line and decided in {Meaning.START, Meaning.STATION} else decided
 
 
-def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None, str]]:
-    """What kinds, map tags, folders and styles say, the nearest to the feature first."""
+def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None, str, str]]:
+    """What kinds, map tags, folders and styles say, the nearest to the feature first, with the text of each."""
     for key in present_columns(tuple(feature.properties), KIND_COLUMNS):
         value = feature.properties[key]
         if isinstance(value, str) and not is_blank(value):
-            yield _decided(value, is_line=False), f"its {key} is {value[:40]!r}"
+            yield _decided(value, is_line=False), f"its {key} is {value[:40]!r}", value
     yield from _tags(feature)
     for folder in reversed(feature.folders):
         meaning = _decided(folder, is_line=False)
         # The only layer of a file holds the ponds, whatever it is called, unless that is something to keep out of.
         if has_layers or meaning in {Meaning.NO_FLY, Meaning.FENCE, Meaning.BOUNDARY}:
-            yield (None if meaning is Meaning.UNCERTAIN else meaning), f"it lies in {folder!r}"
+            yield (None if meaning is Meaning.UNCERTAIN else meaning), f"it lies in {folder!r}", folder
     if feature.style:
         meaning = _decided(feature.style, is_line=False)
-        yield (meaning if meaning in {Meaning.NO_FLY, Meaning.FENCE} else None), f"its style is {feature.style[:40]!r}"
+        told = f"its style is {feature.style[:40]!r}"
+        yield (meaning if meaning in {Meaning.NO_FLY, Meaning.FENCE} else None), told, feature.style
 
 
-def _tags(feature: Feature) -> Iterator[tuple[Meaning | None, str]]:
+def _tags(feature: Feature) -> Iterator[tuple[Meaning | None, str, str]]:
     """What the tags of OpenStreetMap say, and columns that are themselves a question: ``no_fly: yes``."""
     is_osm = any(key in feature.properties for key in ("@id", "osm_id", "osm_way_id"))
     for key, value in feature.properties.items():
         if is_blank(value) or str(value).strip().lower() in {"no", "false", "0", "none"}:
             continue
-        told = f"it has {key}={str(value)[:40]}"
+        text = f"{key}={str(value)[:40]}"
+        told = f"it has {text}"
         if key in _OSM_OTHER and (is_osm or str(value) == "yes"):
-            yield Meaning.OTHER, told
+            yield Meaning.OTHER, told, text
         elif key in _OSM_VALUES:
-            yield _OSM_VALUES[key].get(str(value)), told
+            yield _OSM_VALUES[key].get(str(value)), told, text
         elif str(value).strip().lower() in {"yes", "true", "1"} and meanings(key) == {Meaning.NO_FLY}:
-            yield Meaning.NO_FLY, told
+            yield Meaning.NO_FLY, told, text

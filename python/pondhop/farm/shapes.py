@@ -15,6 +15,7 @@ import numpy as np
 from pondhop.errors import Fault
 from pondhop.farm.features import Positions
 from pondhop.places import EARTH_RADIUS_M, Area, LonLat, Ring, unrolled_longitude, wrapped_longitude
+from pondhop.units import counted
 
 if TYPE_CHECKING:
     import shapely
@@ -28,6 +29,9 @@ MIN_AREA_M2 = 0.01
 MIN_CLEARANCE_SHARE = 0.5
 """A centroid nearer to the bank than this share of the best place is near the bank."""
 
+CLOSING_SHARE = 0.05
+"""A walk that ends within this share of its length from its start went around something."""
+
 MIN_MENDED_SHARE = 0.98
 """Of the area of an outline that crosses itself must be in one piece for the rest to be cut off."""
 
@@ -36,6 +40,22 @@ def close_ring(positions: Positions) -> Ring:
     """The ring, closed if it is not."""
     ring = tuple(positions)
     return ring if len(ring) > 1 and ring[0] == ring[-1] else (*ring, *ring[:1])
+
+
+def closed_line(line: Positions) -> Positions | None:
+    """The ring of a line that goes around something: it ends where it began, or nearly so."""
+    if len(line) <= 3:
+        return None
+    if line[0] == line[-1]:
+        return line
+    lons = [unrolled_longitude(lon, line[0][0]) for lon, _ in line]
+    shrink = math.cos(math.radians(line[0][1]))
+    steps = [
+        math.hypot((lons[index + 1] - lons[index]) * shrink, line[index + 1][1] - line[index][1])
+        for index in range(len(line) - 1)
+    ]
+    gap = math.hypot((lons[-1] - lons[0]) * shrink, line[-1][1] - line[0][1])
+    return [*line, line[0]] if gap <= CLOSING_SHARE * sum(steps) else None
 
 
 @lru_cache(maxsize=8)
@@ -79,7 +99,7 @@ def valid_areas(place: str, rings: Area) -> tuple[Area | None, Fault | None]:
 
     for ring in rings:
         if len(set(ring)) < 3:
-            message = f"the outline has {len(set(ring))} different corners"
+            message = f"the outline has {counted(len(set(ring)), 'different corner')}"
             return None, Fault(place, message, "give a pond at least three corners, or make it a Point")
     polygon = _polygon(rings)
     if polygon.is_valid and area_m2(rings) >= MIN_AREA_M2:
@@ -159,6 +179,17 @@ def extent_m(rings: Area) -> float:
     return math.hypot(east - west, north - south)
 
 
+def hole_around(point: LonLat, rings: Area) -> Ring | None:
+    """The hole of a polygon in which a place lies."""
+    return next((hole for hole in rings[1:] if clearance_m(point, (hole,)) > 0.0), None)
+
+
+def places_inside(points: Sequence[LonLat], areas: Sequence[Area]) -> list[tuple[int, int]]:
+    """Pairs (i, j): place i lies in area j, and in none of its holes. Ponds given as points have an empty outline."""
+    pairs = places_within(points, areas)
+    return [(i, j) for i, j in pairs if hole_around(points[i], areas[j]) is None]
+
+
 def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tuple[int, int]]:
     """Pairs (i, j): place i lies in the outer ring of outline j. Ponds given as points have an empty outline."""
     import shapely
@@ -173,3 +204,25 @@ def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tu
     tree = shapely.STRtree(np.asarray(shapely.polygons(rings)))
     inside, container = tree.query(shapely.points(_unrolled(tuple(points), near)), predicate="within")
     return sorted((int(i), has_outline[int(j)]) for i, j in zip(inside, container, strict=True))
+
+
+def places_together(points: Sequence[LonLat], within_m: float) -> list[tuple[int, int]]:
+    """Pairs (i, j): place j lies that near to place i, which comes before it and is itself near none before.
+
+    Found in cells of that width, so that thousands of places on one spot take no longer than others.
+    """
+    if len(points) < 2:
+        return []
+    lonlats = _unrolled(tuple(points), points[0][0])
+    shrink = np.cos(np.radians(lonlats[:, 1]))
+    metres = METRES_PER_DEGREE * np.column_stack([lonlats[:, 0] * shrink, lonlats[:, 1]])
+    alone: dict[tuple[int, int], list[int]] = {}
+    pairs = []
+    for place, (column, row) in enumerate(np.floor(metres / within_m).astype(int).tolist()):
+        around = (cell for x in (-1, 0, 1) for y in (-1, 0, 1) for cell in alone.get((column + x, row + y), ()))
+        near = [other for other in around if math.dist(metres[place], metres[other]) < within_m]
+        if near:
+            pairs.append((min(near), place))
+        else:
+            alone.setdefault((column, row), []).append(place)
+    return pairs

@@ -20,7 +20,9 @@ from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank,
 from pondhop.farm.letter_o import sign_of_o
 from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
+from pondhop.farm.words import is_plain_word, is_unnamed
 from pondhop.places import LonLat
+from pondhop.units import counted
 
 MAX_CELL_CHARACTERS = 10_000_000
 """Python's own limit of 131,072 is less than an outline in WKT may have."""
@@ -200,7 +202,7 @@ def _header(rows: Sequence[Row], word: str, source: Source) -> tuple[int, Column
 def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) -> Feature | None:
     names = columns.names
     if len(row) > len(names) and any(cell.strip() for cell in row[len(names) :]):
-        message = f"{len(row)} values for {len(names)} columns"
+        message = f"{counted(len(row), 'value')} for {counted(len(names), 'column')}"
         action = "put text with commas in quotes, and write decimals with a point or separate columns with semicolons"
         source.faults.append(Fault(place, message, action))
         return None
@@ -318,7 +320,10 @@ def _joined_corners(features: list[Feature], columns: Columns, source: Source) -
     groups: dict[str, list[Feature]] = {}
     for number, feature in enumerate(features):
         value = feature.properties.get(id_column)
-        key = f"\0{number}" if is_blank(value) or feature.find("role") else str(value).strip()
+        text = "" if is_blank(value) else str(value).strip()
+        # What a program or nobody in particular calls a pond is no id that corners could share.
+        is_id = text and not is_unnamed(text) and not is_plain_word(text) and not feature.find("role")
+        key = text if is_id else f"\0{number}"
         groups.setdefault(key, []).append(feature)
     repeated = [members for members in groups.values() if len(members) > 1]
     if not repeated or min(map(len, repeated)) < MIN_CORNERS or _is_one_name(groups):
@@ -333,10 +338,8 @@ def _joined_corners(features: list[Feature], columns: Columns, source: Source) -
         first = members[0]
         ring = [member.geometry.points[0] for member in members]
         joined.append(Feature(first.place, first.property_place, first.properties, Geometry(polygons=[[ring]])))
-    num_lines = sum(map(len, repeated))
-    source.notes.add(
-        f"{num_lines} lines were joined to {len(repeated)} outlines, a corner a line, by column {id_column!r}."
-    )
+    num_lines, outlines = sum(map(len, repeated)), counted(len(repeated), "outline")
+    source.notes.add(f"{num_lines} lines were joined to {outlines}, a corner a line, by column {id_column!r}.")
     return joined
 
 

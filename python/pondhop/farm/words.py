@@ -32,6 +32,8 @@ class Meaning(Enum):
     """Said of ponds and of areas to keep out of: zone, sector."""
     SAMPLING = "sampling"
     """A place where water is taken."""
+    SERIES = "series"
+    """Said of stations of drones, and of the numbered places where a farm measures: station, waypoint, dock."""
     UNNAMED = "unnamed"
     """What a program calls things that nobody named."""
 
@@ -54,13 +56,20 @@ def _stem(word: str) -> str:
     return word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith("ss") else word
 
 
-def _words(text: str) -> list[str]:
-    """The words of a name: split at blanks, digits, signs and inner capitals, as in NoFlyZone_2."""
+def _split(text: str) -> list[str]:
+    """The words of a name as they are written: split at blanks, digits, signs and inner capitals, as in NoFlyZone_2."""
     text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", unicodedata.normalize("NFC", text))
-    return [
-        _stem(word)
-        for word in _LETTER_RUN.findall(text.replace("'", "").replace("\N{RIGHT SINGLE QUOTATION MARK}", "").casefold())
-    ]
+    return _LETTER_RUN.findall(text.replace("'", "").replace("\N{RIGHT SINGLE QUOTATION MARK}", "").casefold())
+
+
+def _words(text: str) -> list[str]:
+    """The words of a name in the form in which they are compared."""
+    return list(map(_stem, _split(text)))
+
+
+def heading_words(text: str) -> list[str]:
+    """The words of a heading, as in ``Site_Code`` and ``pondNo``."""
+    return _split(text)
 
 
 def plain_words(text: str) -> list[str]:
@@ -90,27 +99,58 @@ def _phrases() -> tuple[dict[str, list[tuple[tuple[str, ...], Meaning]]], list[t
 
 
 @lru_cache(maxsize=65_536)
-def meanings(text: str) -> frozenset[Meaning]:
-    """Everything that the words of a name say; empty for a name that says nothing."""
+def _told(text: str) -> tuple[tuple[tuple[str, frozenset[Meaning]], ...], tuple[str, ...]]:
+    """The phrases of a name with all that each of them says, and the words that say nothing."""
     spaced, joined = _phrases()
-    found: set[Meaning] = set()
+    found: list[tuple[str, frozenset[Meaning]]] = []
     if not text.isascii():
         plain = unicodedata.normalize("NFKC", text).casefold()
         for phrase, meaning in joined:
             if _stands_in(phrase, meaning, plain):
-                found.update(other for same, other in joined if same == phrase)
-                plain = plain.replace(phrase.removeprefix("="), " ")
-    words = _words(text)
+                sign = phrase.removeprefix("=")
+                found.append((sign, frozenset(other for same, other in joined if same == phrase)))
+                plain = plain.replace(sign, " ")
+        foreign = [run for run in _LETTER_RUN.findall(plain) if not all(map(_is_spaced, run))]
+    else:
+        foreign = []
+    written = _split(text)
+    words = list(map(_stem, written))
+    rest: list[str] = []
     at = 0
     while at < len(words):
         matches = [item for item in spaced.get(words[at], ()) if tuple(words[at : at + len(item[0])]) == item[0]]
         if not matches:
+            if all(map(_is_spaced, written[at])):
+                rest.append(written[at])
             at += 1
             continue
         longest = len(matches[0][0])
-        found.update(meaning for phrase, meaning in matches if len(phrase) == longest)
+        said = frozenset(meaning for phrase, meaning in matches if len(phrase) == longest)
+        found.append((" ".join(written[at : at + longest]), said))
         at += longest
-    return frozenset(found)
+    return tuple(found), (*rest, *foreign)
+
+
+@lru_cache(maxsize=65_536)
+def meanings(text: str) -> frozenset[Meaning]:
+    """Everything that the words of a name say; empty for a name that says nothing."""
+    return frozenset(meaning for _, said in _told(text)[0] for meaning in said)
+
+
+def word_for(text: str, meaning: Meaning) -> str:
+    """The word of a name that has a meaning, as it is written there; the whole name if no single word has it."""
+    return next((word for word, said in _told(text)[0] if meaning in said), text)
+
+
+def series_of(text: str) -> tuple[str, tuple[str, ...]] | None:
+    """The word by which a name may be one of a series of sampling points, and the words that say nothing.
+
+    ``None`` for a name with any other word that says what a thing is: a "weather station" is no place in the water.
+    """
+    found, rest = _told(text)
+    words = [word for word, said in found if Meaning.SERIES in said]
+    is_all = all({Meaning.SERIES, Meaning.SAMPLING} & said for _, said in found)
+    return (_stem(words[0]), rest) if words and is_all else None
 
 
 def _stands_in(phrase: str, meaning: Meaning, text: str) -> bool:

@@ -91,8 +91,8 @@ def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int]) ->
 
     The cruise speed is an item of its own: without it ArduPilot flies at the speed of its parameters, whatever was
     planned. Each drone flies out to its first pond in a height layer of its own and comes home in one (the height of
-    the way home is a parameter of the autopilot, not part of the mission). A no-fly zone is forbidden with everything
-    inside it; a hole in a fence is forbidden too.
+    the way home is a parameter of the autopilot, not part of the mission). Areas have no holes here: what they become
+    says `Farm.kept_out`, and around a hole with the depot in it goes a fence.
 
     Parameters
     ----------
@@ -118,9 +118,9 @@ def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int]) ->
         items.extend(_sampling_items(farm.ponds[index], fleet, height_m))
     items.append(MissionItem(Action.RETURN_TO_LAUNCH))
     outlines = [_open(rings[0]) for rings in farm.fences]
-    holes = [_open(ring) for rings in farm.fences for ring in rings[1:]]
-    zones = [_open(rings[0]) for rings in farm.no_fly]
-    return Mission(f"drone-{drone + 1}", home, speed_m_s, tuple(items), tuple(outlines), tuple(zones + holes))
+    outlines += [_open(hole) for _, *holes in farm.kept_out for hole in holes]
+    zones = [_open(outer) for outer, *holes in farm.kept_out if not holes]
+    return Mission(f"drone-{drone + 1}", home, speed_m_s, tuple(items), tuple(outlines), tuple(zones))
 
 
 def _sampling_items(pond: Pond, fleet: Fleet, height_m: float) -> list[MissionItem]:

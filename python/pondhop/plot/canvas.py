@@ -103,10 +103,33 @@ def _figure_axes(aspect: float) -> Axes:
 
 def draw_areas(ax: Axes, rings: Sequence[Points], **style: object) -> None:
     """Fill polygons, each of shape (k, 2)."""
-    from matplotlib.collections import PolyCollection
+    draw_areas_with_holes(ax, [[ring] for ring in rings], **style)
 
-    if rings:
-        ax.add_collection(PolyCollection(list(rings), **style), autolim=False)  # type: ignore[arg-type]
+
+def draw_areas_with_holes(ax: Axes, areas: Sequence[Sequence[Points]], **style: object) -> None:
+    """Fill polygons, each of rings of shape (k, 2): the outer one, then holes, which stay blank."""
+    from matplotlib.collections import PolyCollection
+    from matplotlib.path import Path
+
+    if not areas:
+        return
+    corners, codes = [], []
+    for rings in areas:
+        # Holes stay blank where they run the other way round.
+        turned = [ring if _runs_anticlockwise(ring) == (index == 0) else ring[::-1] for index, ring in enumerate(rings)]
+        paths = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in turned]
+        corners.append(np.concatenate([path.vertices for path in paths]))
+        codes.append(np.concatenate([path.codes for path in paths]))
+    collection = PolyCollection([], **style)  # type: ignore[arg-type]
+    # Codes are a list for each polygon, whatever the types of matplotlib say.
+    collection.set_verts_and_codes(corners, codes)  # type: ignore[arg-type]
+    ax.add_collection(collection, autolim=False)
+
+
+def _runs_anticlockwise(ring: Points) -> bool:
+    """Whether a ring runs anticlockwise: then its area by the corners is positive."""
+    x, y = (ring - ring[0]).T
+    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) > 0.0
 
 
 def write_legend(ax: Axes, look: Look) -> None:

@@ -9,7 +9,15 @@ import numpy as np
 
 from pondhop._core import LocalFrame, Problem, evaluate
 from pondhop.palette import ROUTE_COLOURS, route_colour
-from pondhop.plot.canvas import Points, draw_areas, draw_scale_bar, prepared_axes, write_legend, write_title
+from pondhop.plot.canvas import (
+    Points,
+    draw_areas,
+    draw_areas_with_holes,
+    draw_scale_bar,
+    prepared_axes,
+    write_legend,
+    write_title,
+)
 from pondhop.plot.look import LOOKS, Look, Theme
 from pondhop.plot.names import draw_names
 from pondhop.plot.routes import LINE_STYLES, MARKERS, draw_depot, draw_routes, draw_shading_key, marker_size
@@ -48,16 +56,18 @@ def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "li
     plan = solution.plan
     frame = LocalFrame(*farm.depot)
     look = LOOKS[theme]
-    outlines = [_local(frame, ring) for pond in farm.ponds for ring in pond.outline[:1]]
+    water = [[_local(frame, ring) for ring in pond.outline] for pond in farm.ponds if pond.outline]
     fences = [_local(frame, rings[0]) for rings in farm.fences]
-    zones = [_local(frame, rings[0]) for rings in farm.no_fly]
-    extent = np.vstack([solution.problem.depot[None], solution.problem.ponds, *outlines, *fences, *zones])
+    # As missions hold them, not as they were drawn: a crew sees what its drones are kept out of.
+    zones = [[_local(frame, ring) for ring in rings] for rings in farm.kept_out]
+    outer_rings = [rings[0] for rings in (*water, *zones)]
+    extent = np.vstack([solution.problem.depot[None], solution.problem.ponds, *fences, *outer_rings])
     ax = prepared_axes(ax, extent, look)
-    draw_areas(ax, outlines, facecolor=look.water, edgecolor=look.shore, linewidth=0.6, zorder=1)
+    draw_areas_with_holes(ax, water, facecolor=look.water, edgecolor=look.shore, linewidth=0.6, zorder=1)
     draw_areas(
         ax, fences, facecolor="none", edgecolor=look.outline, linewidth=1.0, linestyle="--", zorder=1, label="fence"
     )
-    draw_areas(
+    draw_areas_with_holes(
         ax, zones, facecolor="none", edgecolor=look.no_fly, linewidth=1.0, hatch="////", zorder=1, label="no-fly zone"
     )
     draw_routes(

@@ -1,0 +1,490 @@
+"""What strangers' farm files brought up, each kind with a few files of its own."""
+
+from __future__ import annotations
+
+from math import cos, radians
+from pathlib import Path
+
+import pytest
+
+from farm_files import (
+    DEPOT,
+    PONDS,
+    faults_of,
+    geojson,
+    ids,
+    kml,
+    kml_polygon,
+    placemark,
+    polygon,
+    ponds,
+    shape,
+    square,
+    table,
+)
+from pondhop.farm import Farm, read_farm
+from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m
+
+
+def points(folder: Path, *names: str, heading: str = "name") -> Path:
+    """A table with a point a line."""
+    lines = (f"{name},{10.1 + 0.001 * row:.4f},105.7" for row, name in enumerate(names))
+    return table(folder, "\n".join((f"{heading},lat,lon", *lines)))
+
+
+def told(farm: Farm, words: str) -> bool:
+    return any(words in note for note in farm.notes)
+
+
+# ------------------------------------------------------------------------------- stations that are sampling points
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        [f"Station {number}" for number in range(1, 9)],
+        ["Waypoint 1", "Waypoint 2", "Waypoint 3"],
+        ["WP 1", "WP 2", "WP 3"],
+        ["Dock 1", "Dock 2"],
+        ["Sampling station 3", "Sampling station 4"],
+        ["Station A", "Station B", "Station C"],
+        ["Station North", "Station South"],
+        ["Estación 1", "Estación 2"],
+        ["Trạm 1", "Trạm 2"],
+        ["Stasiun 01", "Stasiun 02"],
+        ["STATION_7", "STATION_8", "STATION_9"],
+        ["Station 1 upstream", "Station 2 by Smith's", "Station 3"],
+    ],
+)
+def test_numbered_points_of_one_word_are_the_ponds_where_nothing_else_is(tmp_path: Path, names: list[str]) -> None:
+    assert ids(read_farm(points(tmp_path, *names), depot=DEPOT)) == names
+    with_others = read_farm(points(tmp_path, *names, "Office", "Depot", "Weather station"))
+    assert ids(with_others) == names
+    waypoints = "".join(
+        f'<wpt lat="10.{n + 100}" lon="105.7"><name>{name}</name></wpt>' for n, name in enumerate(names)
+    )
+    (tmp_path / "farm.gpx").write_text(f"<gpx>{waypoints}</gpx>", "utf-8")
+    assert ids(read_farm(tmp_path / "farm.gpx", depot=DEPOT)) == names
+
+
+def test_a_note_says_that_stations_are_taken_as_ponds(tmp_path: Path) -> None:
+    farm = read_farm(points(tmp_path, "Station 1", "Station 2", "Station 3"), depot=DEPOT)
+    [note] = farm.notes
+    assert note.startswith(
+        "3 points with the word 'station' are taken as ponds, because no other feature is one: 'Stat"
+    )
+    assert farm.stations == ()
+
+
+def test_stations_of_drones_stay_what_they_are(tmp_path: Path) -> None:
+    docks = [shape("Point", [105.71, 10.11 + 0.001 * n], name=f"Dock {n}") for n in range(1, 4)]
+    farm = read_farm(geojson(tmp_path, *ponds(), *docks), depot=DEPOT)
+    assert (len(farm.ponds), len(farm.stations)) == (3, 3)
+    assert told(farm, "3 stations are in the file; plans do not use stations yet: 'Dock 1' (features[3])")
+    assert told(farm, "To sample there, give them the role pond.")
+    codes = read_farm(points(tmp_path, "A1", "A2", "A3", "Dock 1", "Dock 2"), depot=DEPOT)
+    assert (ids(codes), len(codes.stations)) == (["A1", "A2", "A3"], 2)
+    lone = read_farm(points(tmp_path, "Station 1", "Station 2", "Station 3", "Dock"), depot=DEPOT)
+    assert (len(lone.ponds), len(lone.stations)) == (3, 1)
+
+
+@pytest.mark.parametrize(
+    ("names", "what", "word"),
+    [
+        (["Charging station 1", "Charging station 2"], "a station of the drones", "charging station"),
+        (["Weather station 1", "Weather station 2"], "something beside ponds", "weather station"),
+        (["Gate 1", "Gate 2", "Gate 3"], "something beside ponds", "gate"),
+        (["Station 1"], "a station of the drones", "station"),
+    ],
+)
+def test_a_file_without_a_pond_says_what_each_thing_was_taken_for(
+    tmp_path: Path, names: list[str], what: str, word: str
+) -> None:
+    [(place, message, action)] = faults_of(points(tmp_path, *names), depot=DEPOT)
+    assert place == "file"
+    are = "1 feature" if len(names) == 1 else f"{len(names)} features"
+    assert message.startswith(f"there is no pond in this file: {are} taken for {what} by the word {word!r}: ")
+    assert all(repr(name) in message for name in names)
+    assert "the role pond" in action
+
+
+def test_a_file_without_a_pond_tells_ids_and_roles(tmp_path: Path) -> None:
+    things = [
+        polygon(0, 0, id="7", name="Office"),
+        shape("Point", [105.7, 10.1], role="station", name="S"),
+        shape("Point", [105.7, 10.1], name="Depot"),
+    ]
+    [(_, message, _)] = faults_of(geojson(tmp_path, *things))
+    assert "1 feature taken for something beside ponds by the word 'office': 'Office' (id 7, features[0])" in message
+    assert "1 feature taken for a station of the drones by its role: 'S' (features[1])" in message
+    assert "1 feature taken for the depot by the word 'depot': 'Depot' (features[2])" in message
+
+
+def test_folders_and_kinds_called_stations_hold_ponds_where_nothing_else_is(tmp_path: Path) -> None:
+    inside = "".join(
+        placemark(f"{n}", f"<Point><coordinates>105.7,10.10{n}</coordinates></Point>") for n in range(1, 5)
+    )
+    other = placemark("Depot", "<Point><coordinates>105.6985,10.0995</coordinates></Point>")
+    for name in ("Stations", "station_samples", "Waypoints"):
+        path = kml(tmp_path, f"<Folder><name>{name}</name>{inside}</Folder>", f"<Folder>{other}</Folder>")
+        assert ids(read_farm(path)) == ["1", "2", "3", "4"]
+    kinds = "name,type,lat,lon\n" + "".join(f"S{n},station,10.10{n},105.7\n" for n in range(1, 5))
+    assert ids(read_farm(table(tmp_path, kinds), depot=DEPOT)) == ["S1", "S2", "S3", "S4"]
+    explicit = kinds.replace("type", "role")
+    assert "a station of the drones by its role" in faults_of(table(tmp_path, explicit), depot=DEPOT)[0][1]
+
+
+def test_a_station_with_what_only_ponds_have_is_a_pond(tmp_path: Path) -> None:
+    text = "name,service_s,lat,lon\nPond 1,,10.1,105.7\nStation 2,40,10.101,105.7\n"
+    assert ids(read_farm(table(tmp_path, text), depot=DEPOT)) == ["Pond 1", "Station 2"]
+
+
+# ------------------------------------------------------------------------------------------- cut at the 180th meridian
+
+
+def box(west: float, south: float, east: float, north: float) -> list[list[float]]:
+    return [[west, south], [east, south], [east, north], [west, north], [west, south]]
+
+
+@pytest.mark.parametrize("edge", [180.0, 179.999995])
+def test_a_pond_cut_at_the_180th_meridian_is_one(tmp_path: Path, edge: float) -> None:
+    parts = [[box(179.999, -17.001, edge, -17.0)], [box(-edge, -17.001, -179.9995, -17.0)]]
+    farm = read_farm(geojson(tmp_path, shape("MultiPolygon", parts, name="A")), depot=(179.998, -17.0))
+    [pond] = farm.ponds
+    assert pond.id == "A"
+    assert pond.sampling_point == pytest.approx((179.99975, -17.0005), abs=1e-6)
+    assert area_m2(pond.outline) == pytest.approx(1.5e-3 * 1e-3 * METRES_PER_DEGREE**2 * cos(radians(17.0)), rel=0.01)
+    assert told(farm, "'A' (features[0]): 2 parts that meet on the 180th meridian were put together")
+
+
+def test_an_island_cut_at_the_meridian_is_whole_again(tmp_path: Path) -> None:
+    west = [[179.999, -17.001], [180, -17.001], [180, -17.0007], [179.9998, -17.0007], [179.9998, -17.0003]]
+    west += [[180, -17.0003], [180, -17], [179.999, -17], [179.999, -17.001]]
+    east = [[-lon, lat] for lon, lat in west]
+    farm = read_farm(geojson(tmp_path, shape("MultiPolygon", [[west], [east]], name="A")), depot=(179.998, -17.0))
+    [pond] = farm.ponds
+    assert [len(set(ring)) for ring in pond.outline] == [6, 6]
+    assert clearance_m((180.0, -17.0005), pond.outline) < 0.0
+
+
+def test_ponds_that_only_lie_near_the_meridian_stay_apart(tmp_path: Path) -> None:
+    apart = [[box(179.999, -17.001, 180, -17.0)], [box(-180, -16.999, -179.999, -16.998)]]
+    near = [[box(179.999, -17.001, 179.9999, -17.0)], [box(-179.9999, -17.001, -179.999, -17.0)]]
+    touching = [[box(105.7, 10.1, 105.701, 10.101)], [box(105.701, 10.1, 105.702, 10.101)]]
+    for parts, depot in ((apart, (179.998, -17.0)), (near, (179.998, -17.0)), (touching, DEPOT)):
+        assert len(read_farm(geojson(tmp_path, shape("MultiPolygon", parts, name="A")), depot=depot).ponds) == 2
+    three = [*apart, [box(-180, -17.001, -179.9995, -17.0)]]
+    assert ids(read_farm(geojson(tmp_path, shape("MultiPolygon", three, name="A")), depot=(179.998, -17.0))) == [
+        "A 1",
+        "A 2",
+    ]
+
+
+def test_areas_and_lines_cut_at_the_meridian_are_one(tmp_path: Path) -> None:
+    pond = shape("Point", [-179.9998, -17.0005], id="P")
+    fence = [[box(179.99, -17.01, 180, -16.99)], [box(-180, -17.01, -179.99, -16.99)]]
+    zone = [[box(179.995, -17.001, 180, -17.0)], [box(-180, -17.001, -179.9999, -17.0)]]
+    walk = [[[180, -17.002], [179.999, -17.002], [179.999, -17.003], [180, -17.003]]]
+    walk += [[[-180, -17.002], [-179.999, -17.002], [-179.999, -17.003], [-180, -17.003]]]
+    areas = [shape("MultiPolygon", fence, role="fence"), shape("MultiPolygon", zone, role="no_fly")]
+    path = geojson(tmp_path, pond, *areas, shape("MultiLineString", walk, name="Pond W"))
+    farm = read_farm(path, depot=(179.998, -17.003))
+    assert (ids(farm), len(farm.fences), len(farm.no_fly)) == (["P", "Pond W"], 1, 1)
+    assert farm.ponds[1].sampling_point == pytest.approx((180.0, -17.0025))
+
+
+# ------------------------------------------------------------------------------------------------- holes of areas
+
+
+def around(lon: float, lat: float, half_width: float) -> list[list[float]]:
+    return box(lon - half_width, lat - half_width, lon + half_width, lat + half_width)
+
+
+def test_what_becomes_of_the_holes_of_areas_is_noted(tmp_path: Path) -> None:
+    away = [around(105.73, 10.1, 0.01), around(105.725, 10.1, 0.001), around(105.735, 10.1, 0.001)]
+    fence = [around(105.7, 10.1, 0.05), around(105.67, 10.1, 0.001)]
+    areas = [shape("Polygon", away, name="No fly"), shape("Polygon", fence, name="Geofence")]
+    farm = read_farm(geojson(tmp_path, *ponds(), *areas), depot=DEPOT)
+    assert told(farm, "'No fly' (features[3]): its 2 holes are kept out of too, because autopilots store no-fly zones")
+    assert told(farm, "'Geofence' (features[4]): its hole is kept out of, as a no-fly zone.")
+    assert [len(area) for area in farm.kept_out] == [1, 1]
+
+
+def test_a_farm_in_the_hole_of_a_zone_may_be_flown(tmp_path: Path) -> None:
+    ring = [around(105.7, 10.1, 0.1), around(105.7, 10.1, 0.02)]
+    farm = read_farm(geojson(tmp_path, *ponds(), shape("Polygon", ring, name="No fly")), depot=DEPOT)
+    assert (len(farm.ponds), len(farm.no_fly)) == (3, 1)
+    assert told(farm, "the depot lies in a hole of it, and drones stay inside that hole")
+    assert [len(area) for area in farm.kept_out] == [2]
+
+
+def test_ponds_in_the_hole_of_a_fence_are_outside_of_it(tmp_path: Path) -> None:
+    ring = [around(105.7, 10.1, 0.1), around(105.7, 10.1, 0.02)]
+    path = geojson(tmp_path, *ponds(), shape("Polygon", ring, name="Geofence"))
+    assert "but 0% of the ponds lie in it" in faults_of(path, depot=DEPOT)[0][1]
+
+
+# ------------------------------------------------------------------------------------------ ponds in and upon others
+
+
+def pond_of(*rings: list[list[float]], **properties: object) -> dict[str, object]:
+    return shape("Polygon", rings, **properties)
+
+
+def test_a_pond_on_an_island_of_another_is_in_no_doubt(tmp_path: Path) -> None:
+    outer = pond_of(around(105.7, 10.1, 0.002), around(105.7, 10.1, 0.001), name="Pond 1")
+    for inner in (
+        [pond_of(around(105.7, 10.1, 0.0005), name="Pond 2")],
+        [pond_of(around(105.7, 10.1, 0.001), name="Pond 2")],
+        [pond_of(around(105.7 + dx, 10.1, 0.0002), name=f"Pond {n}") for n, dx in ((2, -0.0005), (3, 0), (4, 0.0005))],
+        [shape("Point", [105.7, 10.1], name="Pond 2")],
+    ):
+        farm = read_farm(geojson(tmp_path, outer, *inner), depot=(105.69, 10.0995))
+        assert (len(farm.ponds), farm.doubts, farm.notes) == (1 + len(inner), (), ())
+
+
+def test_a_pond_in_the_water_of_another_is_a_doubt(tmp_path: Path) -> None:
+    for outer in (
+        pond_of(around(105.7, 10.1, 0.002), name="Pond 1"),
+        pond_of(around(105.7, 10.1, 0.002), around(105.7015, 10.1, 0.0001), name="Pond 1"),
+    ):
+        inner = pond_of(around(105.7005, 10.1005, 0.0003), name="Pond 2")
+        [doubt] = read_farm(geojson(tmp_path, outer, inner), depot=(105.69, 10.0995)).doubts
+        assert doubt.pond_id == "Pond 2"
+        assert "the sampling point of pond Pond 2 lies in pond Pond 1" in doubt.message
+
+
+def test_land_with_its_ponds_cut_out_is_no_pond(tmp_path: Path) -> None:
+    holes = [square(0, 0), square(1, 0), square(2, 0)]
+    land = pond_of(around(105.703, 10.1, 0.01), *holes, name="Crique")
+    [(place, message, _)] = faults_of(geojson(tmp_path, *ponds(), land), depot=DEPOT)
+    assert (place, "lies around 3 other ponds" in message) == ("features[3]", True)
+
+
+def test_a_label_on_an_island_is_no_pond_and_no_place_to_sample(tmp_path: Path) -> None:
+    outer = pond_of(around(105.7, 10.1, 0.002), around(105.7, 10.1, 0.001), name="Pond 1")
+    for name in ("Pond 1", "Sampling point"):
+        farm = read_farm(geojson(tmp_path, outer, shape("Point", [105.7, 10.1], name=name)), depot=DEPOT)
+        assert ids(farm) == ["Pond 1"]
+        assert clearance_m(farm.ponds[0].sampling_point, farm.ponds[0].outline) > 0.0
+        assert told(farm, "are labels")
+
+
+@pytest.mark.parametrize("lon", ["105.7", "105.700004"])
+def test_two_points_at_one_place_are_a_doubt_that_names_both(tmp_path: Path, lon: str) -> None:
+    text = f"pond,lat,lon\nA,10.1,105.7\nB,10.101,105.7\nC,10.1,{lon}\nD,10.1,105.70003\n"
+    farm = read_farm(table(tmp_path, text), depot=DEPOT)
+    [doubt] = farm.doubts
+    assert (doubt.pond_id, doubt.message) == ("C", "line 4: pond C lies where pond A lies (line 2)")
+    assert told(farm, "line 4: pond C lies where pond A lies (line 2); correct one of the two.")
+    assert read_farm(table(tmp_path, text), depot=DEPOT, accept=["C"]).doubts == ()
+
+
+# --------------------------------------------------------------------------------------- what is left out by its kind
+
+
+def test_what_was_never_drawn_is_left_out_by_name_and_count(tmp_path: Path) -> None:
+    def feature(geometry: object, **properties: object) -> dict[str, object]:
+        return {"type": "Feature", "properties": properties, "geometry": geometry}
+
+    nothing = {"type": "GeometryCollection", "geometries": []}
+    one = read_farm(geojson(tmp_path, *ponds(), feature(nothing, name="Norte")), depot=DEPOT)
+    assert (ids(one), one.notes) == (
+        ["Pond 1", "Pond 2", "Pond 3"],
+        ("Left out, because nothing of it was drawn: 'Norte' (features[3]).",),
+    )
+    blank = [feature(nothing, name="Norte"), feature(None, name="Sur"), feature({"type": "Point", "coordinates": []})]
+    [note] = read_farm(geojson(tmp_path, *ponds(), *blank), depot=DEPOT).notes
+    names = "'Norte' (features[3]), 'Sur' (features[4]), features[5]"
+    assert note == f"Left out, because nothing of them was drawn: {names}: 3 features in all."
+    for named in ({"name": "Pond 9"}, {"id": 9}, {"pond_id": "9", "name": "Norte"}):
+        [(place, message, _)] = faults_of(geojson(tmp_path, *ponds(), feature(nothing, **named)), depot=DEPOT)
+        assert (place, "has no geometry" in message) == ("features[3]", True)
+
+
+def test_a_line_drawn_with_a_pond_is_left_out(tmp_path: Path) -> None:
+    ditch = {"type": "LineString", "coordinates": [[105.7, 10.2], [105.71, 10.21]]}
+    for own in ({"type": "Polygon", "coordinates": [square(5, 5)]}, {"type": "Point", "coordinates": [105.71, 10.1]}):
+        geometry = {"type": "GeometryCollection", "geometries": [own, ditch, ditch]}
+        thing = {"type": "Feature", "properties": {"name": "Pond 8"}, "geometry": geometry}
+        farm = read_farm(geojson(tmp_path, *ponds(), thing), depot=DEPOT)
+        assert ids(farm)[3:] == ["Pond 8"]
+        assert told(farm, "'Pond 8' (features[3]): 2 open lines drawn with it were left out.")
+
+
+def test_lines_and_things_beside_ponds_are_counted(tmp_path: Path) -> None:
+    lines = [shape("LineString", [[105.7, 10.2], [105.71, 10.21]], name=f"Row {n}") for n in range(7)]
+    offices = [polygon(5, n, name="Office") for n in range(2)]
+    first, second = read_farm(geojson(tmp_path, *ponds(), *lines, *offices), depot=DEPOT).notes
+    assert first.startswith("Left out, because they are no ponds by their names: 'Office' (features[10])")
+    assert first.endswith(": 2 features in all.")
+    assert second.startswith("Left out, because lines are no ponds: 'Row 0' (features[3])")
+    assert second.endswith(" and 2 more: 7 features in all.")
+
+
+def test_plurals_are_right(tmp_path: Path) -> None:
+    pictures = ["<GroundOverlay><name>A</name></GroundOverlay>", "<ScreenOverlay><name>B</name></ScreenOverlay>"]
+    for count, words in ((1, "no pond: overlay 'A'."), (2, "no pond: 2 overlays 'A', 'B'.")):
+        assert told(read_farm(kml(tmp_path, pond_mark(1), *pictures[:count]), depot=DEPOT), words)
+    out = shape("Polygon", [square(0, 0)], name="Pond 1", sampling_point=[105.6999, 10.1])
+    assert told(read_farm(geojson(tmp_path, out), depot=DEPOT), "1 sampling point lies outside the outline of its pond")
+    beside = shape("Point", [105.71, 10.11], name="Norte")
+    assert "a point among 1 outline" in faults_of(geojson(tmp_path, *ponds(1), beside), depot=DEPOT)[0][1]
+    parts = shape("MultiPolygon", [[square(0, 0)], [square(2, 0)], [square(4, 0, 0.0002)]], name="A")
+    assert told(read_farm(geojson(tmp_path, parts), depot=DEPOT), "its 2 parts are 2 ponds, numbered; 1 small part was")
+    same = shape("Polygon", [[[105.7, 10.1]] * 4], name="A")
+    assert "has 1 different corner" in faults_of(geojson(tmp_path, same), depot=DEPOT)[0][1]
+    corners = "pond,lat,lon\nA,10.1,105.7\nA,10.1,105.701\nA,10.101,105.7\nB,10.2,105.7\n"
+    assert told(read_farm(table(tmp_path, corners), depot=DEPOT), "3 lines were joined to 1 outline, a corner a line")
+
+
+# ------------------------------------------------------------------------------------------ hidden in the map program
+
+HIDDEN = "<visibility>0</visibility>"
+
+
+def pond_mark(number: int, *, inside: str = "", name: str = "Pond") -> str:
+    return placemark(f"{name} {number}", f"{inside}{kml_polygon(number, 0)}")
+
+
+def test_a_hidden_pond_is_left_out_with_a_note(tmp_path: Path) -> None:
+    seen = "".join(pond_mark(n, inside="<visibility>1</visibility>") for n in (1, 2))
+    farm = read_farm(kml(tmp_path, seen, pond_mark(3, inside=HIDDEN)), depot=DEPOT)
+    assert ids(farm) == ["Pond 1", "Pond 2"]
+    [note] = farm.notes
+    assert note.startswith("Left out, because it is hidden in the map program (to sample it, tick it there and save")
+    assert note.endswith("'Pond 3' (placemark 3).")
+
+
+@pytest.mark.parametrize("value", ["0", "false", " 0 "])
+def test_what_lies_in_a_hidden_folder_is_hidden(tmp_path: Path, value: str) -> None:
+    inner = f"<Folder><name>Old</name>{pond_mark(3)}{pond_mark(4)}</Folder>"
+    outer = f"<Folder><name>Drained</name><visibility>{value}</visibility>{inner}{pond_mark(5)}</Folder>"
+    farm = read_farm(kml(tmp_path, pond_mark(1), outer), depot=DEPOT)
+    assert ids(farm) == ["Pond 1"]
+    assert told(farm, "'Pond 3' (placemark 2), 'Pond 4' (placemark 3), 'Pond 5' (placemark 4): 3 features in all.")
+
+
+def test_a_map_that_is_hidden_as_a_whole_is_read_with_a_note(tmp_path: Path) -> None:
+    for parts in ((HIDDEN, pond_mark(1), pond_mark(2)), tuple(pond_mark(n, inside=HIDDEN) for n in (1, 2))):
+        farm = read_farm(kml(tmp_path, *parts), depot=DEPOT)
+        assert ids(farm) == ["Pond 1", "Pond 2"]
+        assert farm.notes == (
+            "In the map program all 2 ponds are hidden; taken all the same, because the file has no other pond.",
+        )
+
+
+def test_hidden_areas_keep_drones_out_and_hidden_depots_give_way(tmp_path: Path) -> None:
+    zone = placemark("No fly", f"{HIDDEN}{kml_polygon(5, 5)}")
+    depots = [
+        placemark("Depot", f"{inside}<Point><coordinates>105.69{n},10.0995</coordinates></Point>")
+        for n, inside in ((5, HIDDEN), (8, ""))
+    ]
+    farm = read_farm(kml(tmp_path, pond_mark(1), zone, *depots))
+    assert (len(farm.no_fly), farm.depot) == (1, (105.698, 10.0995))
+    assert told(farm, "kept all the same, because drones must know of them: 'No fly' (placemark 2).")
+    assert told(farm, "another depot is the one that can be seen in the map program: 'Depot' (placemark 3).")
+    alone = read_farm(kml(tmp_path, pond_mark(1), depots[0]))
+    assert alone.depot == (105.695, 10.0995)
+
+
+# ------------------------------------------------------------------------------------------ headings and names of ponds
+
+
+@pytest.mark.parametrize(
+    ("text", "names", "heading"),
+    [
+        ("Stn Code,lat,lon\n101,10.1,105.7\n102,10.101,105.7\n", ["101", "102"], "Stn Code"),
+        ("station,lat,lon\n7,10.1,105.7\n9,10.101,105.7\n", ["7", "9"], "station"),
+        ("xyz,lat,lon\nNorte,10.1,105.7\nSur,10.101,105.7\n", ["Norte", "Sur"], "xyz"),
+        (
+            "name,Grid Ref,lat,lon\nPond,B1,10.1,105.7\nPond,B2,10.101,105.7\nPond,B3,10.102,105.7\n",
+            ["B1", "B2", "B3"],
+            "Grid Ref",
+        ),
+        (
+            "Name,Field Code,lat,lon\nA,B-1,10.1,105.7\nA,B-2,10.101,105.7\nC,B-3,10.102,105.7\n",
+            ["B-1", "B-2", "B-3"],
+            "Field Code",
+        ),
+    ],
+)
+def test_the_heading_that_gives_the_names_is_told_as_it_is_spelled(
+    tmp_path: Path, text: str, names: list[str], heading: str
+) -> None:
+    farm = read_farm(table(tmp_path, text), depot=DEPOT)
+    assert ids(farm) == names
+    assert told(farm, f"named by column {heading!r}")
+
+
+def test_numbers_under_any_heading_are_no_names(tmp_path: Path) -> None:
+    farm = read_farm(table(tmp_path, "depth,lat,lon\n3,10.1,105.7\n4,10.101,105.7\n"), depot=DEPOT)
+    assert ids(farm) == ["1", "2"]
+
+
+def test_numbers_in_columns_of_codes_are_read_from_maps_too(tmp_path: Path) -> None:
+    features = [shape("Point", [105.7, 10.1 + 0.001 * n], SiteNo=n, depth=2 * n) for n in (4, 7)]
+    assert ids(read_farm(geojson(tmp_path, *features), depot=DEPOT)) == ["4", "7"]
+
+
+BESIDE = ("Office", "Pump house", "No fly", "Gate", "Road")
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        [f"{word} {number}" for number in range(1, 7)]
+        for word in (
+            *(
+                "Pool",
+                "Cell",
+                "Paddy",
+                "Tank",
+                "Bassin",
+                "Estanque",
+                "Viveiro",
+                "Kolam",
+                "Ao",
+                "Cage",
+                "Raceway",
+                "Petak",
+            ),
+            *(
+                "Tambak",
+                "Viivi",
+                "Gher",
+                "Vuông",
+                "Bè",
+                "网箱",
+                "가두리",
+                "いけす",
+                "กระชัง",
+                "Садок",
+                "قفص",
+                "Compartment",
+            ),
+        )
+    ],
+    ids=lambda names: names[0],
+)
+def test_ponds_by_any_name_among_things_that_are_none(tmp_path: Path, names: list[str]) -> None:
+    things: list[dict[str, object]] = [polygon(8, row, name=name) for row, name in enumerate(BESIDE[:3])]
+    things += [shape("Point", [105.72, 10.11], name="Gate")]
+    things += [shape("LineString", [[105.72, 10.11], [105.72, 10.12]], name="Road")]
+    outlines = [polygon(column, 0, name=name) for column, name in enumerate(names)]
+    points = [shape("Point", [105.7, 10.1 + 0.001 * row], name=name) for row, name in enumerate(names)]
+    mixed = [*(polygon(column, 0, name=f"Pond {column}") for column in range(6)), polygon(7, 0, name=names[1])]
+    for ponds_drawn in (outlines, points, mixed):
+        farm = read_farm(geojson(tmp_path, *ponds_drawn, *things), depot=DEPOT)
+        assert (len(farm.ponds), len(farm.no_fly), farm.doubts) == (len(ponds_drawn), 1, ())
+
+
+@pytest.mark.parametrize("name", ["Basin", "Lagoon", "Petak", "Tambak", "Tank B", "Pool", "Talab", "Lồng"])
+def test_a_word_for_ponds_alone_is_a_pond(tmp_path: Path, name: str) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(6), polygon(5, 5, name=name), polygon(8, 8, name="Office")), depot=DEPOT)
+    assert (ids(farm)[6:], farm.doubts) == ([name], ())
+
+
+@pytest.mark.parametrize("name", ["Swimming pool", "Kolam renang", "Bak air", "Hồ bơi", "Water tank"])
+def test_water_that_nobody_farms_is_no_pond(tmp_path: Path, name: str) -> None:
+    assert ids(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)) == PONDS[:3]
