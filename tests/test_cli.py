@@ -381,6 +381,44 @@ def test_ctrl_c_ends_without_a_traceback(tmp_path: Path) -> None:
     assert "Traceback" not in err
 
 
+STOPPING = [(signal.SIGINT, 130, "with Ctrl-C"), (signal.SIGTERM, 143, "by SIGTERM")]
+
+SIGNAL_AT_AN_IMPORT = """
+import os, sys
+
+module, number = sys.argv[1], int(sys.argv[2])
+del sys.argv[1:3]
+
+class SignalAt:
+    def find_spec(self, name, path=None, target=None):
+        if name == module:
+            os.kill(os.getpid(), number)
+
+sys.meta_path.insert(0, SignalAt())
+from pondhop.__main__ import main
+
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize("module", ["pondhop.cli", "typer", "numpy", "pondhop._core", "shapely", "pondhop.outputs"])
+@pytest.mark.parametrize(("number", "code", "how"), STOPPING)
+def test_a_signal_while_modules_are_imported_is_told_in_a_line(
+    module: str, number: int, code: int, how: str, tmp_path: Path
+) -> None:
+    plan = ["plan", str(FARM), "--drones", "3", "-o", str(tmp_path / "out")]
+    command = [sys.executable, "-c", SIGNAL_AT_AN_IMPORT, module, str(int(number)), *plan]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (code, "", f"pondhop: stopped {how}\n")
+    assert not (tmp_path / "out").exists()
+
+
+def test_python_runs_the_package_as_a_command() -> None:
+    ran = subprocess.run([sys.executable, "-m", "pondhop", "--version"], capture_output=True, text=True, check=True)
+    assert ran.stdout.startswith("pondhop ")
+
+
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="needs SIGPIPE")
 def test_a_reader_that_leaves_early_is_no_fault() -> None:
     command = f"'{PONDHOP}' generate --ponds 300 --farms 50 | head -c 1"

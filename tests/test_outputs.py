@@ -169,8 +169,10 @@ def test_plans_survive_a_kill(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_stopped_search_is_a_plan_that_says_so(number: int, code: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "code", "how"), [(signal.SIGINT, 130, "with Ctrl-C"), (signal.SIGTERM, 143, "by SIGTERM")]
+)
+def test_a_stopped_search_is_a_plan_that_says_so(number: int, code: int, how: str, tmp_path: Path) -> None:
     farm = Path(__file__).resolve().parents[1] / "examples" / "delta_farm.geojson"
     command = [PONDHOP, "plan", farm, "--drones", 5, "--no-figure", "--time-limit", 600, "-o", tmp_path / "out"]
     process = subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -180,8 +182,11 @@ def test_a_stopped_search_is_a_plan_that_says_so(number: int, code: int, tmp_pat
     process.send_signal(number)
     _, told = process.communicate()
     assert process.returncode == code, told
-    assert "best plan until then" in told
-    assert json.loads((tmp_path / "out" / "plan.json").read_text())["is_interrupted"] is True
+    assert told == f"pondhop: stopped {how}; this is the best plan until then, and plan.json says so\n"
+    document = json.loads((tmp_path / "out" / "plan.json").read_text())
+    assert document["is_interrupted"] is True
+    # Whoever reads the plan later need not know which signal it was, and must not be told the wrong one.
+    assert "The planning was stopped: this is the best plan until then." in document["notes"]
 
 
 def processor_time_s(pid: int) -> float:

@@ -40,7 +40,7 @@ class Solution:
     cpu_s
         Processor time of all threads of this process while it planned; 0 for a plan that was read.
     is_interrupted
-        Whether Ctrl-C ended the planning; the plan is the best so far.
+        Whether Ctrl-C or another signal ended the planning; the plan is the best so far.
     reason
         What `auto` chose and why; empty for other planners.
     passed_over
@@ -300,7 +300,7 @@ class FarmPlan:
                 f"{AIRFRAME_SPEED_M_S:g} m/s, so see that yours does fly that fast."
             )
         if self.solution.is_interrupted:
-            notes.append("The planning was stopped with Ctrl-C: this is the best plan until then.")
+            notes.append("The planning was stopped: this is the best plan until then.")
         return tuple(notes)
 
     def _repr_html_(self) -> str:

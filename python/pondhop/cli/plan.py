@@ -11,11 +11,11 @@ import typer
 
 from pondhop.cli.shared import (
     EXIT_INFEASIBLE,
-    EXIT_INTERRUPTED,
     INSTALL_MATPLOTLIB,
     Json,
     RequireFeasible,
     Seed,
+    exit_stopped,
     has_matplotlib,
     parse_lonlat,
     print_faults,
@@ -24,6 +24,7 @@ from pondhop.cli.shared import (
     search_progress,
     with_planning_options,
 )
+from pondhop.documents.signals import STOPS
 from pondhop.errors import Fault, InvalidInput
 from pondhop.planners import PlainOptions
 from pondhop.units import counted
@@ -109,8 +110,7 @@ def plan(
         heading = "No mission was written, because this plan cannot be flown"
         print_faults(written.faults, "no_missions", heading, as_json)
     if farm_plan.solution.is_interrupted:
-        typer.echo("pondhop: stopped with Ctrl-C; this is the best plan until then, and plan.json says so", err=True)
-        raise typer.Exit(EXIT_INTERRUPTED)
+        exit_stopped(f"{STOPS.text}; this is the best plan until then, and plan.json says so")
     if written.faults or (require_feasible and not farm_plan.is_feasible):
         raise typer.Exit(EXIT_INFEASIBLE)
 

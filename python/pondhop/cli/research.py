@@ -12,10 +12,10 @@ import typer
 
 from pondhop.cli.shared import (
     EXIT_INFEASIBLE,
-    EXIT_INTERRUPTED,
     Json,
     RequireFeasible,
     Seed,
+    exit_stopped,
     progress,
     require_matplotlib,
     search_progress,
@@ -99,8 +99,7 @@ def solve(
     if output is not None and not as_json and writer.num_plans:
         totals.print()
     if is_stopped:
-        typer.echo(f"pondhop: stopped; {writer.num_plans} of {len(read)} farms are planned", err=True)
-        raise typer.Exit(EXIT_INTERRUPTED)
+        exit_stopped(f"stopped; {writer.num_plans} of {len(read)} farms are planned")
     if require_feasible and totals.num_infeasible:
         raise typer.Exit(EXIT_INFEASIBLE)
 
