@@ -10,7 +10,7 @@ from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
 from pondhop.files.plan_geojson import plan_geojson
 from pondhop.files.plan_json import BEGINNING, plan_json
-from pondhop.missions import earlier_missions, mission_texts
+from pondhop.missions import README, earlier_missions, mission_texts
 from pondhop.solution import FarmPlan
 from pondhop.units import Units
 
@@ -83,7 +83,7 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
 
         axes = plot.plot_plan(farm_plan, units=units)
         files |= {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
-    replace_files(folder, files, _earlier(folder))
+    replace_files(folder, files, _earlier(folder), (PLAN_JSON, f"{MISSIONS}/{README}"))
     names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
     return Outputs(tuple(names), text, faults, farm_plan)
 

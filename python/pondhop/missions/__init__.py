@@ -78,9 +78,9 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
         texts = mission_texts(farm_plan)
     except InvalidInput:
         if earlier:
-            replace_files(folder, {}, earlier)
+            replace_files(folder, {}, earlier, (README,))
         raise
-    replace_files(folder, texts, earlier)
+    replace_files(folder, texts, earlier, (README,))
     return [folder / name for name in texts]
 
 
