@@ -200,15 +200,24 @@ def test_a_written_plan_can_be_judged_and_drawn(run: Run, tmp_path: Path) -> Non
     assert Path(json.loads(drawn.out)["figure"]).stat().st_size > 1000
 
 
+def test_a_plan_is_judged_and_drawn_in_feet_and_miles(run: Run, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install matplotlib")
+    farm_plan = make_plan(make_farm(), Fleet(num_drones=1, max_route_length_m=300.0), [[0, 1, 2, 3, 4]])
+    write_plan_json(tmp_path / "plan.json", farm_plan)
+    judged = run("evaluate", tmp_path / "plan.json", "--units", "us")
+    assert "max_route_length_m is 984 ft" in " ".join(judged.out.split())
+    assert run("plot", tmp_path / "plan.json", "--units", "us", "-o", tmp_path / "plan.svg").code == 0
+
+
 def test_a_drawing_says_what_the_file_does_not(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install matplotlib")
     farm = make_farm(no_fly=((square(-89.0015, 37.001, 0.0002),),))
     write_plan_json(tmp_path / "plan.json", make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
     drawn: list[FarmPlan] = []
 
-    def plot_plan(farm_plan: FarmPlan) -> "Axes":
+    def plot_plan(farm_plan: FarmPlan, **options: Any) -> "Axes":
         drawn.append(farm_plan)
-        return draw(farm_plan)
+        return draw(farm_plan, **options)
 
     draw = plot.plot_plan
     monkeypatch.setattr(plot, "plot_plan", plot_plan)

@@ -55,7 +55,7 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     has_figure
         Whether to draw it, which needs matplotlib.
     units
-        What the picture tells lengths in.
+        What picture, missions and faults tell lengths in; plan.json and plan.geojson are in metres.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     files: dict[str, Content] = {PLAN_JSON: text, PLAN_GEOJSON: plan_geojson(farm_plan)}
     faults: tuple[Fault, ...] = ()
     try:
-        files |= {f"{MISSIONS}/{name}": text for name, text in mission_texts(farm_plan).items()}
+        files |= {f"{MISSIONS}/{name}": text for name, text in mission_texts(farm_plan, units).items()}
     except InvalidInput as error:
         faults = error.faults
     if has_figure:

@@ -18,7 +18,7 @@ from pondhop.fleet import Fleet
 from pondhop.fleet.layers import Layers
 from pondhop.fleet.settings import AIRFRAME_SPEED_M_S
 from pondhop.palette import route_colour
-from pondhop.units import counted, duration_text, energy_text, length_text
+from pondhop.units import Units, counted, duration_text, energy_text, length_text, speed_text
 
 NO_NUMBER = "no number of drones is known to keep it"
 
@@ -184,19 +184,33 @@ class FarmPlan:
 
     @property
     def violations(self) -> tuple[FarmViolation, ...]:
-        """Every rule that the plan breaks; empty for one that can be flown."""
+        """Every rule that the plan breaks, in metric units; empty for one that can be flown."""
+        return self._violations("metric")
+
+    def _violations(self, units: Units) -> tuple[FarmViolation, ...]:
         broken = self.solution.plan.violations
-        return (*(self._in_words(violation) for violation in broken), *self.obstacles)
+        return (*(self._in_words(violation, units) for violation in broken), *self.obstacles)
 
     @property
     def told_violations(self) -> tuple[FarmViolation, ...]:
         """The violations for people to read: ponds that break the same rule are told once, with their number."""
+        return self.violations_told_in("metric")
+
+    def violations_told_in(self, units: Units) -> tuple[FarmViolation, ...]:
+        """Return `told_violations` in some units.
+
+        Parameters
+        ----------
+        units
+            Of lengths. Those of ``obstacles`` are as they were found: `pondhop.missions.judged` finds them in others.
+        """
+        violations = self._violations(units)
         ponds: dict[tuple[str, str], list[FarmViolation]] = {}
-        for violation in self.violations:
+        for violation in violations:
             if violation.pond is not None:
                 ponds.setdefault((violation.kind, self._without_pond(violation)), []).append(violation)
         told = []
-        for violation in self.violations:
+        for violation in violations:
             alike = ponds.get((violation.kind, self._without_pond(violation)), [violation])
             if len(alike) > 1 and violation.pond is not None:
                 if violation is alike[0]:
@@ -280,7 +294,11 @@ class FarmPlan:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user should know before flying, a sentence each."""
+        """What the user should know before flying, a sentence each, in metric units."""
+        return self.notes_told_in("metric")
+
+    def notes_told_in(self, units: Units) -> tuple[str, ...]:
+        """Return the notes with speeds in some units; settings of a fleet are told as its file has them."""
         notes = list(self.farm.notes)
         if self.solution.passed_over:
             notes.append(self.solution.passed_over_text)
@@ -297,7 +315,7 @@ class FarmPlan:
         if fast:
             notes.append(
                 f"The plan counts with {' and '.join(fast)}: the quadcopter of its laws flies at most "
-                f"{AIRFRAME_SPEED_M_S:g} m/s, so see that yours does fly that fast."
+                f"{speed_text(AIRFRAME_SPEED_M_S, units)}, so see that yours does fly that fast."
             )
         if self.solution.is_interrupted:
             notes.append("The planning was stopped: this is the best plan until then.")
@@ -321,7 +339,7 @@ class FarmPlan:
             f"<table><tr>{heads}</tr>{''.join(rows)}</table>" + (f"<ul>{broken}</ul>" if broken else "")
         )
 
-    def _in_words(self, violation: Violation) -> FarmViolation:
+    def _in_words(self, violation: Violation, units: Units) -> FarmViolation:
         pond = None if violation.pond is None else f"pond {self.farm.ponds[violation.pond].id}"
         drone = None if violation.route is None else violation.route + 1
         value, limit = violation.value or 0.0, violation.limit or 0.0
@@ -334,7 +352,8 @@ class FarmPlan:
                 message = f"there are {counted(int(value), 'route')} for {counted(int(limit), 'drone')}"
                 remedy = f"plan again, with {value:.0f} drones if they are there"
             case "too_long":
-                message = f"drone {drone} flies {length_text(value)}, max_route_length_m is {length_text(limit)}"
+                message = f"drone {drone} flies {length_text(value, units)}"
+                message += f", max_route_length_m is {length_text(limit, units)}"
                 remedy = self._more_drones
             case "too_slow":
                 message = f"drone {drone} is under way for {duration_text(value)}"

@@ -33,6 +33,10 @@ INSTALL_MATPLOTLIB = "install it with: pip install matplotlib"
 
 Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults on stderr as JSON, for programs.")]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
+UnitsOption = Annotated[
+    Literal["metric", "us"],
+    typer.Option("--units", help="What people read: metres and m/s, or feet, miles and mph. plan.json has metres."),
+]
 RequireFeasible = Annotated[bool, typer.Option("--require-feasible", help="Exit with 3 if a plan breaks a rule.")]
 
 _PLANNING_OPTIONS: dict[str, tuple[object, object]] = {
