@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
 import numpy as np
 
 from pondhop import _core, missions
-from pondhop._core import Energy, Problem
+from pondhop._core import Problem
 from pondhop.errors import Fault, InvalidInput
 from pondhop.solution import FarmPlan, FarmViolation, Solution
 
@@ -214,6 +214,10 @@ def _search(problem: Problem, options: Options) -> Planned:
     return Planned(routes, elapsed_s, is_interrupted)
 
 
+def _hpp(problem: Problem, options: Options) -> Planned:
+    return Planned(*_core.hpp(problem, seed=options.seed))
+
+
 def _territory(problem: Problem, options: Options) -> Planned:
     planned = _core.territory(
         problem,
@@ -298,7 +302,7 @@ PLANNERS = {
         Planner(
             "hpp",
             "the paper's planner: k-means clusters, each flown back and forth; a territory for every drone",
-            lambda problem, options: Planned(*_core.hpp(problem, seed=options.seed)),
+            _hpp,
             frozenset({"has_separate_airspace"}),
         ),
         Planner(
@@ -454,9 +458,8 @@ def _levelled(problem: Problem, costs: Sequence[float]) -> Problem:
     if not len(problem.layers):
         return problem
     takeoff_s, way_home_s, takeoff_j, way_home_j = map(float, costs)
-    _, energy = problem.energy.__getnewargs_ex__()
-    energy |= {"takeoff_j": takeoff_j, "way_home_fixed_j": way_home_j}
-    return problem.replace(takeoff_s=takeoff_s, way_home_fixed_s=way_home_s, energy=Energy(**energy), layers=None)
+    energy = problem.energy.replace(takeoff_j=takeoff_j, way_home_fixed_j=way_home_j)
+    return problem.replace(takeoff_s=takeoff_s, way_home_fixed_s=way_home_s, energy=energy, layers=None)
 
 
 def _hungriest_lowest(problem: Problem, routes: Routes) -> Routes:

@@ -7,7 +7,7 @@ use pondhop_core::geometry::Point;
 use pondhop_core::problem::Layer;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyBool;
+use pyo3::types::{PyBool, PyFloat, PyInt, PyList, PyTuple};
 
 /// A number of any real type, or what is shown of something else. A whole number beyond all floats is infinite.
 pub struct Real(Result<f64, String>);
@@ -31,6 +31,10 @@ impl<'py> FromPyObject<'_, 'py> for Real {
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let py = value.py();
+        let is_plain = value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>();
+        if !is_plain && has_masked(&value)? {
+            return Ok(Self(Err("masked".into())));
+        }
         match value.extract::<f64>() {
             Ok(number) => Ok(Self(Ok(number))),
             Err(error) if error.is_instance_of::<PyOverflowError>(py) => {
@@ -171,6 +175,10 @@ fn real_array<'py>(
     value: &Bound<'py, PyAny>,
 ) -> PyResult<Option<PyReadonlyArrayDyn<'py, f64>>> {
     let py = value.py();
+    if has_masked(value)? {
+        faults.add(name, "some of its values are masked", "leave them out, or fill them with values to plan with");
+        return Ok(None);
+    }
     let array = match py.import("numpy")?.call_method1("asarray", (value,)) {
         Ok(array) => array,
         // Lists of lists of different lengths, or what numpy cannot read.
@@ -186,6 +194,23 @@ fn real_array<'py>(
         return Ok(None);
     }
     Ok(Some(array.call_method1("astype", ("float64",))?.extract()?))
+}
+
+/// Whether a masked array, or a list of them, hides values: numpy would take what lies below the mask for them.
+fn has_masked(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let is_masked = value.py().import("numpy")?.getattr("ma")?.getattr("is_masked")?;
+    if is_masked.call1((value,))?.extract()? {
+        return Ok(true);
+    }
+    if !(value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>()) {
+        return Ok(false);
+    }
+    for item in value.try_iter()? {
+        if is_masked.call1((item?,))?.extract()? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 fn add_shape_fault(faults: &mut Faults, name: &str, shape: &[usize], action: &str) {

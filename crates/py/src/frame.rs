@@ -2,11 +2,12 @@
 
 use crate::arguments::points;
 use crate::error::to_python;
-use crate::values::table;
+use crate::values::{hash_of, table};
 use numpy::PyArray2;
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 /// A metric frame around a place on the globe: x east and y north of the origin, in metres.
 ///
@@ -16,7 +17,8 @@ use pyo3::prelude::*;
 /// ----------
 /// longitude_deg, latitude_deg
 ///     The origin.
-#[pyclass(frozen, module = "pondhop")]
+#[pyclass(frozen, eq, module = "pondhop")]
+#[derive(PartialEq)]
 pub struct LocalFrame {
     inner: pondhop_core::frame::LocalFrame,
 }
@@ -32,6 +34,19 @@ impl LocalFrame {
     #[getter]
     fn origin_deg(&self) -> (f64, f64) {
         self.inner.origin_deg()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f64, f64)) {
+        (slf.get_type(), slf.get().origin_deg())
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash_of(<[f64; 2]>::from(self.origin_deg()))
+    }
+
+    fn __repr__(&self) -> String {
+        let (longitude_deg, latitude_deg) = self.origin_deg();
+        format!("LocalFrame(longitude_deg={longitude_deg:?}, latitude_deg={latitude_deg:?})")
     }
 
     /// Metres east and north, shape (n, 2), of longitudes and latitudes in degrees, shape (n, 2), of any real type.

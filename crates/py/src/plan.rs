@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2, ToPyArray};
 use pondhop_core::plan::Route;
 use pondhop_core::problem::VehicleType;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyTuple, PyType};
 use std::sync::Arc;
 
 /// A rule that a plan breaks: immutable. Its text is a sentence; its fields say the same to a program.
@@ -108,8 +108,8 @@ impl Violation {
         self.fields().4
     }
 
-    fn __getnewargs__(&self) -> Fields {
-        self.fields()
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, Fields) {
+        (slf.get_type(), slf.get().fields())
     }
 
     fn __hash__(&self) -> u64 {

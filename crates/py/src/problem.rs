@@ -2,13 +2,13 @@
 
 use crate::arguments::{self, Real};
 use crate::error::to_python;
-use crate::values::{hash_of, table};
+use crate::values::{Reduced, hash_of, reduced, table};
 use numpy::{PyArray1, PyArray2, ToPyArray};
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
 use pondhop_core::problem::{Depot, VehicleType, Visit, WayHome};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyDict;
 use std::iter::repeat;
 use std::sync::Arc;
 
@@ -101,12 +101,30 @@ impl Energy {
         self.inner.usable_energy
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let settings = PyDict::new(py);
-        for (name, value) in self.fields() {
-            settings.set_item(name, value)?;
+    /// The same with some arguments changed.
+    ///
+    /// Parameters
+    /// ----------
+    /// **changes
+    ///     Arguments as of `Energy`.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput
+    ///     As `Energy`.
+    /// TypeError
+    ///     If there is no such argument.
+    #[pyo3(signature = (**changes))]
+    fn replace<'py>(&self, py: Python<'py>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = self.arguments(py)?;
+        if let Some(changes) = changes {
+            arguments.update(changes.as_mapping())?;
         }
-        Ok((PyTuple::empty(py), settings))
+        py.get_type::<Self>().call((), Some(&arguments))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, &self.arguments(py)?)
     }
 
     fn __hash__(&self) -> u64 {
@@ -120,6 +138,14 @@ impl Energy {
 }
 
 impl Energy {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let arguments = PyDict::new(py);
+        for (name, value) in self.fields() {
+            arguments.set_item(name, value)?;
+        }
+        Ok(arguments)
+    }
+
     fn fields(&self) -> [(&'static str, f64); 6] {
         [
             ("takeoff_j", self.takeoff_j()),
@@ -358,8 +384,8 @@ impl Problem {
         self.inner.vehicle_type().max_duration
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        Ok((PyTuple::empty(py), self.arguments(py)?))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, &self.arguments(py)?)
     }
 
     fn __hash__(&self) -> u64 {

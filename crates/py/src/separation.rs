@@ -5,6 +5,7 @@ use crate::error::to_python;
 use crate::problem::Problem;
 use crate::values::hash_of;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 /// How well a plan keeps the drones apart: immutable.
 ///
@@ -47,12 +48,12 @@ impl Separation {
         self.inner.num_depot_leg_crossings
     }
 
-    fn __getnewargs__(&self) -> (f64, usize, usize) {
-        (self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings)
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f64, usize, usize)) {
+        (slf.get_type(), slf.get().fields())
     }
 
     fn __hash__(&self) -> u64 {
-        let (overlap, num_crossings, num_depot_leg_crossings) = self.__getnewargs__();
+        let (overlap, num_crossings, num_depot_leg_crossings) = self.fields();
         hash_of([overlap, num_crossings as f64, num_depot_leg_crossings as f64])
     }
 
@@ -61,6 +62,12 @@ impl Separation {
             "Separation(overlap={:?}, num_crossings={}, num_depot_leg_crossings={})",
             self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings
         )
+    }
+}
+
+impl Separation {
+    const fn fields(&self) -> (f64, usize, usize) {
+        (self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings)
     }
 }
 
