@@ -208,7 +208,7 @@ def test_no_sum_of_extreme_values_is_infinite() -> None:
 def test_an_unknown_argument_is_a_type_error(problem: Problem) -> None:
     with pytest.raises(TypeError, match="num_pilots"):
         problem.replace(num_pilots=1)  # type: ignore[call-arg]
-    with pytest.raises(TypeError, match="Energy"):
+    with pytest.raises(InvalidInput, match=r"energy: it is 357 \(give a pondhop.Energy\)"):
         problem.replace(energy=357)  # type: ignore[arg-type]
 
 

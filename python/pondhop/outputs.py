@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from pondhop.farm.features import listed
 from pondhop.files.plan_geojson import plan_geojson
 from pondhop.files.plan_json import BEGINNING, plan_json
 from pondhop.missions import README, earlier_missions, mission_texts
-from pondhop.solution import FarmPlan
+from pondhop.solution import FarmPlan, check_written
 from pondhop.units import Units
 
 PLAN_JSON, PLAN_GEOJSON, MISSIONS = "plan.json", "plan.geojson", "missions"
@@ -40,7 +41,9 @@ class Outputs:
     farm_plan: FarmPlan
 
 
-def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units: Units = "metric") -> Outputs:
+def write_outputs(
+    folder: str | os.PathLike[str], farm_plan: FarmPlan, *, has_figure: bool, units: Units = "metric"
+) -> Outputs:
     """Write all that a plan becomes, in place of an earlier plan in the folder, as a whole.
 
     The folder holds all of the new plan or all of the old one, also after a full disk or a signal on the way; files of
@@ -69,6 +72,8 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     OSError
         If a file cannot be written; then the folder is as it was.
     """
+    check_written(folder, farm_plan, "folder", units)
+    folder = Path(folder)
     if has_figure:
         farm_plan = _with_note_of_letters(farm_plan)
     text = plan_json(farm_plan)

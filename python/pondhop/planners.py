@@ -6,25 +6,25 @@ passed in place of a name: ``solve(problem, planner=my_planner)``.
 
 from __future__ import annotations
 
-import math
+import inspect
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 from functools import partial
-from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
+from typing import Literal, TypedDict, Unpack, get_args
 
 import numpy as np
 
 from pondhop import _core, missions
 from pondhop._core import Problem
+from pondhop.arguments import Arguments, shown
 from pondhop.errors import Fault, InvalidInput
+from pondhop.farm.model import Farm
+from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan, FarmViolation, Solution
-
-if TYPE_CHECKING:
-    from pondhop.farm.model import Farm
-    from pondhop.fleet import Fleet
 
 Routes = Sequence[Sequence[int]]
 PlannerFunction = Callable[[Problem, int, float | None], Routes]
@@ -58,7 +58,7 @@ _LIMIT_NAMES = {
     "too_much_energy": "what the battery gives above its reserve",
 }
 
-MOST_SECONDS, MOST_THREADS = 1e7, 1024
+LEAST_SECONDS, MOST_SECONDS, MOST_THREADS = sys.float_info.min, 1e7, 1024
 """Beyond these a limit of time or a number of threads is a slip of the fingers."""
 
 Objective = Literal["max", "total"]
@@ -379,13 +379,11 @@ def solve(
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
     wishes = Options(**options)
-    faults = _faults(wishes, problem)
-    chosen = _chosen(planner, faults)
-    if wishes.has_separate_airspace and chosen is not None and chosen.is_airspace_shared:
-        message = f"{chosen.name} lets drones share airspace"
-        faults.append(Fault("has_separate_airspace", message, "use auto or territory"))
+    chosen, planner_faults = _chosen(planner)
+    faults = [*_faults(wishes, problem, chosen), *planner_faults]
     if chosen is None or faults:
         raise InvalidInput(faults)
+    wishes = replace(wishes, seed=int(wishes.seed))
     cpu_start_s = time.process_time()
     planned = chosen.run(_levelled(problem, problem.layers.max(axis=0, initial=0.0)), wishes)
     cpu_s = time.process_time() - cpu_start_s
@@ -430,6 +428,10 @@ def plan(
     InvalidInput
         As `solve`.
     """
+    arguments = Arguments()
+    arguments.kind("farm", farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
+    arguments.kind("fleet", fleet, Fleet, "give a pondhop.Fleet, as in pondhop.Fleet(num_drones=3)")
+    arguments.check()
     problem = farm.to_problem(fleet)
     solved = solve(problem, planner=planner, **options)
     solution = replace(solved, separation=_core.separation(problem, solved.plan.routes))
@@ -545,29 +547,30 @@ def _sized(problem: Problem, options: Options, is_separate: bool) -> Routes:
     return _core.search(problem, seed=options.seed, iterations=steps, objective=options.objective)[0]
 
 
-def _faults(options: Options, problem: Problem) -> list[Fault]:
-    faults = []
-    if not 0 <= options.seed < 2**64:
-        # Python refuses to print numbers of more than some thousand digits.
-        told = f"{options.seed}" if abs(options.seed) < 2**128 else "it"
-        faults.append(Fault("seed", f"{told} is not a whole number from 0 to 2^64 - 1", "choose another seed"))
-    if options.time_limit_s is not None and not 0 < options.time_limit_s <= MOST_SECONDS:
-        message = f"{options.time_limit_s} is not above 0 and at most {MOST_SECONDS:g}"
-        faults.append(Fault("time_limit_s", message, "give seconds, or leave it out"))
-    if not 1 <= options.threads <= MOST_THREADS:
-        faults.append(Fault("threads", f"it is not 1 to {MOST_THREADS}", "give the cores there are"))
-    if options.iterations is not None and not 1 <= options.iterations < 2**63:
-        message = "it is not a whole number from 1 to 2^63 - 1"
-        faults.append(Fault("iterations", message, "give fewer steps, or leave it out"))
-    if not 0 <= options.slack_percent < math.inf:
-        faults.append(Fault("slack_percent", f"{options.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
-    for name, chosen, possible in (
-        ("objective", options.objective, get_args(Objective)),
-        ("decoding", options.decoding, get_args(Decoding)),
-    ):
-        if chosen not in possible:
-            faults.append(Fault(name, f"there is no {name} {chosen!r}", f"choose one of: {', '.join(possible)}"))
-    if options.start is not None:
+def _faults(options: Options, problem: Problem, planner: Planner | None) -> list[Fault]:
+    arguments = Arguments()
+    is_problem = arguments.kind("problem", problem, Problem, "give a pondhop.Problem, as farm.to_problem returns it")
+    arguments.whole("seed", options.seed, 0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
+    if options.time_limit_s is not None:
+        action = f"give seconds above 0 and at most {MOST_SECONDS:g}, or leave it out"
+        arguments.real("time_limit_s", options.time_limit_s, LEAST_SECONDS, MOST_SECONDS, action)
+    arguments.whole("threads", options.threads, 1, MOST_THREADS, f"give the cores there are, 1 to {MOST_THREADS}")
+    if options.iterations is not None:
+        action = "give a whole number from 1 to 2^63 - 1, or leave it out"
+        arguments.whole("iterations", options.iterations, 1, 2**63 - 1, action)
+    action = "give per cent, 0 or more, as in 1.5"
+    arguments.real("slack_percent", options.slack_percent, 0.0, sys.float_info.max, action)
+    arguments.one_of("objective", options.objective, get_args(Objective))
+    arguments.one_of("decoding", options.decoding, get_args(Decoding))
+    is_truth = arguments.truth("has_separate_airspace", options.has_separate_airspace)
+    if is_truth and options.has_separate_airspace and planner is not None and planner.is_airspace_shared:
+        message = f"{planner.name} lets drones share airspace"
+        arguments.faults.append(Fault("has_separate_airspace", message, "use auto or territory"))
+    if options.progress is not None and not callable(options.progress):
+        action = "give a function of the longest route, the iterations and the share of the effort, or leave it out"
+        arguments.refuse("progress", options.progress, action)
+    faults = arguments.faults
+    if options.start is not None and is_problem:
         faults += _start_faults(problem, options.start)
     return faults
 
@@ -587,16 +590,35 @@ def _start_faults(problem: Problem, start: Routes) -> list[Fault]:
     ]
 
 
-def _chosen(planner: str | PlannerFunction, faults: list[Fault]) -> Planner | None:
-    """Return the planner meant, or add the fault that there is none."""
+def _chosen(planner: str | PlannerFunction) -> tuple[Planner | None, list[Fault]]:
+    """Return the planner meant, or the fault that there is none."""
+    action = "give the name of a planner, or a function from problem, seed and time limit to routes"
     if callable(planner):
-        return _timed(planner)
+        if _takes_three(planner):
+            return _timed(planner), []
+        return None, [Fault("planner", f"{_name_of(planner)} does not take problem, seed and time limit", action)]
+    if not isinstance(planner, str):
+        return None, [Fault("planner", f"it is {shown(planner)}", action)]
     if planner not in PLANNERS:
         close = get_close_matches(planner, PLANNERS, n=1)
         action = f"did you mean {close[0]!r}?" if close else f"choose one of: {', '.join(PLANNERS)}"
-        faults.append(Fault("planner", f"there is no planner {planner!r}", action))
-        return None
-    return PLANNERS[planner]
+        return None, [Fault("planner", f"there is no planner {planner!r}", action)]
+    return PLANNERS[planner], []
+
+
+def _takes_three(function: PlannerFunction) -> bool:
+    try:
+        inspect.signature(function).bind(None, None, None)
+    except TypeError:
+        return False
+    except ValueError:
+        # Some functions that are not written in Python do not tell what they take.
+        return True
+    return True
+
+
+def _name_of(function: PlannerFunction) -> str:
+    return str(getattr(function, "__name__", type(function).__name__))
 
 
 def _timed(function: PlannerFunction) -> Planner:
@@ -607,5 +629,4 @@ def _timed(function: PlannerFunction) -> Planner:
         found = function(problem, options.seed, options.time_limit_s)
         return Planned(found, time.perf_counter() - start)
 
-    name = getattr(function, "__name__", type(function).__name__)
-    return Planner(name, (function.__doc__ or "").partition("\n")[0], run, frozenset({"time_limit_s"}))
+    return Planner(_name_of(function), (function.__doc__ or "").partition("\n")[0], run, frozenset({"time_limit_s"}))

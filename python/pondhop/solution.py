@@ -6,12 +6,14 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pondhop import _core
 from pondhop._core import Plan, Problem, Separation, Violation, evaluate
+from pondhop.arguments import Arguments
 from pondhop.farm.features import listed
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
@@ -60,6 +62,12 @@ class Solution:
     reason: str = ""
     passed_over: tuple[str, ...] = ()
     known_lower_bound_s: float | None = None
+
+    def __post_init__(self) -> None:
+        arguments = Arguments()
+        arguments.kind("problem", self.problem, Problem, "give a pondhop.Problem")
+        arguments.kind("plan", self.plan, Plan, "give a pondhop.Plan, as pondhop.evaluate returns it")
+        arguments.check()
 
     # A bound is found when it is asked for: that takes longer than HPP, and whoever needs one does not need the other.
 
@@ -182,12 +190,22 @@ class FarmPlan:
     num_drones_needed: int | None = None
     are_layers_stacked: bool = False
 
+    def __post_init__(self) -> None:
+        arguments = Arguments()
+        arguments.kind("farm", self.farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
+        arguments.kind("fleet", self.fleet, Fleet, "give a pondhop.Fleet")
+        arguments.kind("solution", self.solution, Solution, "give a pondhop.Solution")
+        arguments.all_kind("obstacles", self.obstacles, FarmViolation, "give violations of a farm's plan")
+        arguments.truth("are_layers_stacked", self.are_layers_stacked)
+        arguments.check()
+
     @property
     def violations(self) -> tuple[FarmViolation, ...]:
         """Every rule that the plan breaks, in metric units; empty for one that can be flown."""
         return self._violations("metric")
 
     def _violations(self, units: Units) -> tuple[FarmViolation, ...]:
+        check_units(units)
         broken = self.solution.plan.violations
         return (*(self._in_words(violation, units) for violation in broken), *self.obstacles)
 
@@ -290,6 +308,10 @@ class FarmPlan:
 
     def energy_phases(self, drone: int) -> EnergyPhases:
         """Return what a route takes, by phases; drones count from 0 here, as routes do."""
+        arguments = Arguments()
+        most = len(self.solution.plan.routes) - 1
+        arguments.whole("drone", drone, 0, most, f"give the index of a route, 0 to {most}")
+        arguments.check()
         return EnergyPhases(*map(float, self.solution.plan.phase_energies_j[drone]))
 
     @property
@@ -299,6 +321,7 @@ class FarmPlan:
 
     def notes_told_in(self, units: Units) -> tuple[str, ...]:
         """Return the notes with speeds in some units; settings of a fleet are told as its file has them."""
+        check_units(units)
         notes = list(self.farm.notes)
         if self.solution.passed_over:
             notes.append(self.solution.passed_over_text)
@@ -374,6 +397,36 @@ class FarmPlan:
         planned = "" if self.solution.planner in ("auto", "search", "territory") else ", planned by auto"
         return f"fly with {self.num_drones_needed} drones{planned}, or leave ponds out"
 
+
+def check_units(units: object) -> None:
+    """Refuse units that are none.
+
+    Raises
+    ------
+    InvalidInput
+        With what was given.
+    """
+    arguments = Arguments()
+    arguments.one_of("units", units, get_args(Units))
+    arguments.check()
+
+
+def check_written(path: object, farm_plan: object, name: str = "path", units: object = "metric") -> None:
+    """Refuse to write what is no plan of a farm, or to what is no file or folder.
+
+    Raises
+    ------
+    InvalidInput
+        With each of them.
+    """
+    arguments = Arguments()
+    arguments.path(name, path)
+    arguments.kind("farm_plan", farm_plan, FarmPlan, PLAN_WANTED)
+    arguments.one_of("units", units, get_args(Units))
+    arguments.check()
+
+
+PLAN_WANTED = "give a plan of a farm, as pondhop.plan returns it"
 
 _MAP_WIDTH = 420.0
 """Of the map in a notebook, in pixels."""

@@ -1,6 +1,6 @@
 //! `pondhop_core::frame`.
 
-use crate::arguments::points;
+use crate::arguments::{Real, points};
 use crate::error::to_python;
 use crate::values::{hash_of, table};
 use numpy::PyArray2;
@@ -9,6 +9,9 @@ use pondhop_core::geometry::Point;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
+const MAX_LONGITUDE_DEG: f64 = 360.0;
+const MAX_LATITUDE_DEG: f64 = 90.0;
+
 /// A metric frame around a place on the globe: x east and y north of the origin, in metres.
 ///
 /// A transverse Mercator projection of WGS84 with scale 1 at the origin; lengths are right to 2e-6 within 10 km.
@@ -16,7 +19,12 @@ use pyo3::types::PyType;
 /// Parameters
 /// ----------
 /// longitude_deg, latitude_deg
-///     The origin.
+///     The origin: longitudes of -360 to 360, for places across the 180th meridian; latitudes of -90 to 90.
+///
+/// Raises
+/// ------
+/// InvalidInput
+///     With each of them that is no such number.
 #[pyclass(frozen, eq, module = "pondhop")]
 #[derive(PartialEq)]
 pub struct LocalFrame {
@@ -26,8 +34,12 @@ pub struct LocalFrame {
 #[pymethods]
 impl LocalFrame {
     #[new]
-    fn new(longitude_deg: f64, latitude_deg: f64) -> Self {
-        Self { inner: pondhop_core::frame::LocalFrame::new(longitude_deg, latitude_deg) }
+    fn new(longitude_deg: Real, latitude_deg: Real) -> PyResult<Self> {
+        let mut faults = Faults::default();
+        let longitude = degrees(&mut faults, "longitude_deg", longitude_deg, MAX_LONGITUDE_DEG);
+        let latitude = degrees(&mut faults, "latitude_deg", latitude_deg, MAX_LATITUDE_DEG);
+        let inner = pondhop_core::frame::LocalFrame::new(longitude, latitude);
+        faults.into_result(Self { inner }).map_err(|error| to_python(&error))
     }
 
     /// Longitude and latitude of the origin in degrees.
@@ -72,6 +84,15 @@ impl LocalFrame {
         let geographic = places.iter().map(|&place| self.inner.to_geographic(place));
         table(py, geographic.flat_map(|(longitude_deg, latitude_deg)| [longitude_deg, latitude_deg]), 2)
     }
+}
+
+fn degrees(faults: &mut Faults, name: &str, value: Real, most: f64) -> f64 {
+    let degrees = value.number(faults, name, 0.0);
+    if !(-most..=most).contains(&degrees) {
+        faults.add(name, format!("it is {degrees}"), &format!("give degrees of -{most} to {most}"));
+        return 0.0;
+    }
+    degrees
 }
 
 fn places(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Point>> {

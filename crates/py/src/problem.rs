@@ -201,7 +201,7 @@ impl Energy {
 ///     speeds 1e-6 to 1e6, durations at most 1e9, powers at most 1e9, energies at most 1e12, so that all that is computed from
 ///     them is finite.
 /// TypeError
-///     If `energy` is no `Energy`, or there is no such argument.
+///     If there is no such argument.
 #[pyclass(frozen, eq, module = "pondhop")]
 #[derive(PartialEq)]
 pub struct Problem {
@@ -228,7 +228,7 @@ impl Problem {
         way_home_speed_m_s: Option<Real>,
         way_home_fixed_s: Real,
         service_energies_j: Option<&Bound<'_, PyAny>>,
-        energy: Option<Energy>,
+        energy: Option<&Bound<'_, PyAny>>,
         layers: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut faults = Faults::default();
@@ -257,7 +257,7 @@ impl Problem {
             leg_stop_duration: leg_stop_s.number(&mut faults, "leg_stop_s", 0.0),
             takeoff_duration: takeoff_s.number(&mut faults, "takeoff_s", 0.0),
             way_home,
-            energy: energy.map_or(pondhop_core::problem::Energy::UNKNOWN, |energy| energy.inner),
+            energy: energy.map_or(pondhop_core::problem::Energy::UNKNOWN, |energy| inner_energy(&mut faults, energy)),
             max_length: max_length_m.number(&mut faults, "max_length_m", f64::INFINITY),
             max_duration: max_duration_s.number(&mut faults, "max_duration_s", f64::INFINITY),
         };
@@ -405,6 +405,16 @@ impl Problem {
         }
         format!("Problem({})", shown.join(", "))
     }
+}
+
+fn inner_energy(faults: &mut Faults, value: &Bound<'_, PyAny>) -> pondhop_core::problem::Energy {
+    value.extract::<Energy>().map_or_else(
+        |_| {
+            faults.add("energy", format!("it is {}", arguments::shortened(value)), "give a pondhop.Energy");
+            pondhop_core::problem::Energy::UNKNOWN
+        },
+        |energy| energy.inner,
+    )
 }
 
 impl Problem {

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from pondhop.arguments import Arguments
 from pondhop.documents.atomic import earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import Farm, doubt_fault
@@ -27,7 +28,7 @@ from pondhop.missions.parameters import (
     qgroundcontrol_parameters,
 )
 from pondhop.missions.readme import BEGINNING, crew_readme
-from pondhop.solution import FarmPlan, FarmViolation
+from pondhop.solution import PLAN_WANTED, FarmPlan, FarmViolation, check_written
 from pondhop.units import Units, gap_text, length_text
 
 __all__ = ["README", "earlier_missions", "judged", "mission_texts", "obstacles", "write_missions"]
@@ -74,6 +75,7 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan, *, units
     OSError
         If a file cannot be written.
     """
+    check_written(folder, farm_plan, "folder", units)
     folder = Path(folder)
     earlier = earlier_missions(folder)
     try:
@@ -144,12 +146,20 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
     farm_plan
         Its own ``obstacles`` are passed over.
     """
+    _check(farm_plan)
     return _obstacles(farm_plan, _missions(farm_plan), "metric")
 
 
 def judged(farm_plan: FarmPlan, units: Units = "metric") -> FarmPlan:
     """Return a plan with all that keeps it from being flown, told in some units, also what its file does not tell."""
+    _check(farm_plan)
     return _judged(farm_plan, _missions(farm_plan), units)
+
+
+def _check(farm_plan: object) -> None:
+    arguments = Arguments()
+    arguments.kind("farm_plan", farm_plan, FarmPlan, PLAN_WANTED)
+    arguments.check()
 
 
 def _judged(farm_plan: FarmPlan, missions: Sequence[Mission], units: Units) -> FarmPlan:
