@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from hand_made import make_farm, make_plan, square, two_drones
-from pondhop import instances, outputs
+from pondhop import cli, instances, outputs, planners
 from pondhop.documents import atomic
 from pondhop.errors import InvalidInput
 from pondhop.fleet import Fleet
@@ -212,6 +212,56 @@ def test_only_what_is_surely_ours_is_removed(tmp_path: Path) -> None:
         outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
         assert sorted(left_behind(tmp_path)) == sorted([*kept, ".pondhop-fghijklm", in_use.name])
     assert not in_use.exists()
+
+
+@pytest.mark.parametrize("name", ["plan.json", "plan.svg", "missions/README.txt", "missions"])
+def test_a_folder_that_will_be_refused_is_told_before_planning(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def plan(*_: object, **__: object) -> None:
+        raise AssertionError("planned all the same")
+
+    monkeypatch.setattr(planners, "plan", plan)
+    (tmp_path / "out" / name).parent.mkdir(parents=True)
+    (tmp_path / "out" / name).write_text("the user's own")
+    farm = Path(__file__).resolve().parents[1] / "examples" / "delta_farm.geojson"
+    monkeypatch.setattr(sys, "argv", ["pondhop", "plan", str(farm), "--drones", "3", "-o", str(tmp_path / "out")])
+    with pytest.raises(SystemExit) as exited:
+        cli.main()
+    assert exited.value.code == 2
+    assert f"{tmp_path / 'out' / name}: " in capsys.readouterr().err
+
+
+def test_a_file_in_the_place_of_the_folder_is_told(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("the user's own")
+    with pytest.raises(InvalidInput, match="there is something else"):
+        outputs.write_outputs(tmp_path / "out", two_drones(), has_figure=False)
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Missions for Test farm, hover-dip",
+        "Missions for Test farm, splashdown, for ArduPilot Copter",
+        "Missions for Delta farm of 120 ponds (made up, seed 1), hover-dip, for ArduPilot\n  Copter",
+    ],
+)
+def test_missions_of_an_earlier_version_are_ours(title: str, tmp_path: Path) -> None:
+    outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
+    (tmp_path / "missions" / "README.txt").write_text(f"{title}\n\nDRONES\n")
+    outputs.write_outputs(tmp_path, one_drone(), has_figure=False)
+    assert (tmp_path / "missions" / "README.txt").read_text().startswith("Pondhop missions for Test farm")
+    assert not (tmp_path / "missions" / "drone-2.plan").exists()
+
+
+@pytest.mark.parametrize(
+    "text", ["Missions for Monday\n\nCall Bob.\n", "Missions for Monday, or\n\nnever, hover-dip\n"]
+)
+def test_what_people_write_of_missions_is_their_own(text: str, tmp_path: Path) -> None:
+    (tmp_path / "missions").mkdir()
+    (tmp_path / "missions" / "README.txt").write_text(text)
+    with pytest.raises(InvalidInput, match="nothing says that it wrote"):
+        outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
 
 
 def test_a_folder_in_the_way_is_told(tmp_path: Path) -> None:

@@ -6,7 +6,8 @@ import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pondhop.documents.atomic import Content, earlier_files, replace_files
+from pondhop.arguments import checked_path
+from pondhop.documents.atomic import Content, check_is_file_or_absent, earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
 from pondhop.files.plan_geojson import plan_geojson
@@ -74,6 +75,7 @@ def write_outputs(
     """
     check_written(folder, farm_plan, "folder", units)
     folder = Path(folder)
+    check_folder(folder)
     if has_figure:
         farm_plan = _with_note_of_letters(farm_plan)
     text = plan_json(farm_plan)
@@ -91,6 +93,25 @@ def write_outputs(
     replace_files(folder, files, _earlier(folder), (PLAN_JSON, f"{MISSIONS}/{README}"))
     names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
     return Outputs(tuple(names), text, faults, farm_plan)
+
+
+def check_folder(folder: str | os.PathLike[str]) -> None:
+    """Refuse a folder that `write_outputs` would refuse, before anybody has waited for a plan.
+
+    Raises
+    ------
+    InvalidInput
+        If it is no folder, or a folder, a file of the user's own or the like has the name of one of the files.
+    OSError
+        If the folder cannot be read.
+    """
+    folder = checked_path("folder", folder)
+    for path in (folder, folder / MISSIONS):
+        if os.path.lexists(path) and not path.is_dir():
+            message = "pondhop writes a folder of this name, and there is something else"
+            raise InvalidInput([Fault(str(path), message, "move it away, or choose another folder")])
+    for name in _earlier(folder):
+        check_is_file_or_absent(folder / name)
 
 
 def _with_note_of_letters(farm_plan: FarmPlan) -> FarmPlan:

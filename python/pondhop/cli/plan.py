@@ -85,6 +85,7 @@ def plan(
     if figure:
         require_matplotlib()
     is_drawn = has_matplotlib() if figure is None else figure
+    outputs.check_folder(output)
     chosen_fleet = _fleet(drones, fleet, sampling)
     with progress("Planning", total=4 if is_drawn else 3) as advance:
         read = read_farm(

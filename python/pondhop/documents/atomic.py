@@ -20,7 +20,7 @@ from pondhop.errors import Fault, InvalidInput
 Content = str | bytes | Iterable[str]
 """Text, written as UTF-8 with the line ends it has, at once or in parts; or bytes."""
 
-_MAX_BEGINNING = 200
+_MAX_BEGINNING = 1_000
 """Bytes of a file that tell whose it is."""
 
 STAGING_PREFIX = ".pondhop-"

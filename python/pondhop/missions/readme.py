@@ -25,8 +25,11 @@ _WIDTH = 88
 
 _TITLE = "Pondhop missions for"
 
-BEGINNING = re.compile(rf"{_TITLE}\b".encode())
-"""How every such text begins, and hardly one of the user's own."""
+_EARLIER_TITLE = r"Missions for (?:(?!\n\s*\n).)+?,\s+(?:hover-dip|splashdown)(?:,\s+for\s+ArduPilot\s+Copter)?\r?\n"
+
+BEGINNING = re.compile(rf"{_TITLE}\b|{_EARLIER_TITLE}".encode(), re.DOTALL)
+"""How every such text begins, and hardly one of the user's own. Version 0.1 began with "Missions for", as people might:
+its whole title tells."""
 
 STANDS_APART_M = 5.0
 """Between two drones at the depot: positions are known to 1 or 2 m."""
