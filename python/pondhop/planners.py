@@ -24,6 +24,7 @@ from pondhop.arguments import Arguments, shown
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
+from pondhop.limits import Proofs
 from pondhop.solution import FarmPlan, FarmViolation, Solution
 
 Routes = Sequence[Sequence[int]]
@@ -502,12 +503,15 @@ def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
     """
     farm, fleet, solution = farm_plan.farm, farm_plan.fleet, farm_plan.solution
     is_separate = options.has_separate_airspace or solution.planner == "territory"
+    proofs = Proofs(solution.problem)
 
     def found(num_drones: int) -> FarmPlan | None:
         try:
             wider = replace(fleet, num_drones=num_drones)
             problem = farm.to_problem(wider)
         except InvalidInput:
+            return None
+        if proofs.is_out_of_reach(problem):
             return None
         for costs in (problem.layers.min(axis=0), problem.layers.max(axis=0)):
             levelled = _levelled(problem, costs)
