@@ -152,6 +152,10 @@ class Planned:
     reason: str = ""
 
 
+def _nothing_more(_options: Options) -> frozenset[str]:
+    return frozenset()
+
+
 @dataclass(frozen=True)
 class Planner:
     """A planner of this package.
@@ -165,7 +169,9 @@ class Planner:
     run
         Plans a problem as wished.
     obeys
-        Fields of `Options` beside seed and progress that it has a use for.
+        Fields of `Options` beside seed and progress that it always has a use for.
+    also_obeys
+        Those that it has a use for besides, where the others are as they are.
     is_airspace_shared
         Whether drones cross each other's airspace, so that separate airspace cannot be asked for.
     """
@@ -174,22 +180,26 @@ class Planner:
     description: str
     run: Callable[[Problem, Options], Planned]
     obeys: frozenset[str]
+    also_obeys: Callable[[Options], frozenset[str]] = _nothing_more
     is_airspace_shared: bool = False
+
+    def passed_over(self, options: Options) -> tuple[str, ...]:
+        """Return the options that were asked for and that the planner has no use for."""
+        obeyed = self.obeys | self.also_obeys(options) | {"seed", "progress"}
+        asked = [item.name for item in fields(options) if getattr(options, item.name) != item.default]
+        return tuple(name for name in asked if name not in obeyed)
 
 
 _OF_SEARCH = frozenset({"time_limit_s", "threads", "iterations", "slack_percent", "objective", "start"})
 _OF_TERRITORY = frozenset({"time_limit_s", "iterations", "has_separate_airspace"})
 
 
-def _passed_over(planner: Planner, options: Options) -> tuple[str, ...]:
-    """Return the options that were asked for and that the planner has no use for."""
-    obeys = planner.obeys
-    if planner.name == "auto":
-        obeys = _OF_TERRITORY if options.has_separate_airspace else _OF_SEARCH
-    elif "decoding" in obeys and options.decoding == "sampling":
-        obeys |= {"iterations"}
-    asked = [item.name for item in fields(options) if getattr(options, item.name) != item.default]
-    return tuple(name for name in asked if name not in obeys | {"seed", "progress"})
+def _of_what_auto_chooses(options: Options) -> frozenset[str]:
+    return _OF_TERRITORY if options.has_separate_airspace else _OF_SEARCH
+
+
+def _of_decoding(options: Options) -> frozenset[str]:
+    return frozenset({"iterations"}) if options.decoding == "sampling" else frozenset()
 
 
 def _search_iterations(problem: Problem, options: Options) -> int | None:
@@ -291,7 +301,8 @@ PLANNERS = {
             "auto",
             "chooses planner and effort from the size of the farm, the time limit and whether airspace is separate",
             _auto,
-            _OF_SEARCH | _OF_TERRITORY,
+            _OF_SEARCH & _OF_TERRITORY,
+            _of_what_auto_chooses,
         ),
         Planner(
             "search",
@@ -338,6 +349,7 @@ PLANNERS = {
             "the paper's attention model: trained for the least total; may use more routes than there are drones",
             partial(_attention, "am50"),
             frozenset({"decoding"}),
+            _of_decoding,
             is_airspace_shared=True,
         ),
         Planner(
@@ -345,6 +357,7 @@ PLANNERS = {
             "an attention model trained for the shortest longest route; never more routes than drones",
             partial(_attention, "am_minmax"),
             frozenset({"decoding"}),
+            _of_decoding,
             is_airspace_shared=True,
         ),
     )
@@ -397,7 +410,7 @@ def solve(
         cpu_s=cpu_s,
         is_interrupted=planned.is_interrupted,
         reason=planned.reason,
-        passed_over=_passed_over(chosen, wishes),
+        passed_over=chosen.passed_over(wishes),
     )
 
 
