@@ -76,8 +76,13 @@ def write_outputs(
     check_written(folder, farm_plan, "folder", units)
     folder = Path(folder)
     check_folder(folder)
+    pictures: dict[str, Content] = {}
     if has_figure:
-        farm_plan = _with_note_of_letters(farm_plan)
+        from pondhop import plot
+
+        axes, unwritten = plot.drawn_plan(farm_plan, units=units)
+        pictures = {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
+        farm_plan = _with_note_of_letters(farm_plan, unwritten)
     text = plan_json(farm_plan)
     files: dict[str, Content] = {PLAN_JSON: text, PLAN_GEOJSON: plan_geojson(farm_plan)}
     faults: tuple[Fault, ...] = ()
@@ -85,11 +90,7 @@ def write_outputs(
         files |= {f"{MISSIONS}/{name}": text for name, text in mission_texts(farm_plan, units).items()}
     except InvalidInput as error:
         faults = error.faults
-    if has_figure:
-        from pondhop import plot
-
-        axes = plot.plot_plan(farm_plan, units=units)
-        files |= {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
+    files |= pictures
     replace_files(folder, files, _earlier(folder), (PLAN_JSON, f"{MISSIONS}/{README}"))
     names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
     return Outputs(tuple(names), text, faults, farm_plan)
@@ -114,16 +115,15 @@ def check_folder(folder: str | os.PathLike[str]) -> None:
         check_is_file_or_absent(folder / name)
 
 
-def _with_note_of_letters(farm_plan: FarmPlan) -> FarmPlan:
-    """Return the plan with a note of the names that the picture cannot show, if there are any."""
-    from pondhop.plot.fonts import REPLACEMENT, lettering
-
-    farm = farm_plan.farm
-    names = [farm.name, *(pond.id for pond in farm.ponds)]
-    missing = lettering(names).missing
+def _with_note_of_letters(farm_plan: FarmPlan, missing: frozenset[str]) -> FarmPlan:
+    """Return the plan with a note of the names that the picture cannot show, if letters are missing."""
     if not missing:
         return farm_plan
-    unwritten = listed(name for name in dict.fromkeys(names) if missing & set(name))
+    from pondhop.plot.fonts import REPLACEMENT
+
+    farm = farm_plan.farm
+    names = dict.fromkeys([farm.name, *(pond.id for pond in farm.ponds)])
+    unwritten = listed(name for name in names if missing & set(name))
     note = (
         f"No font of this machine has all letters of {unwritten}: the picture shows {REPLACEMENT} for those that are "
         "missing. Install a font of that script, as Noto Sans, to see them."

@@ -154,8 +154,8 @@ def draw_scale_bar(ax: Axes, look: Look, units: Units) -> None:
     )
 
 
-def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look) -> None:
-    """Write a name and below it lines of facts; letters that no font of the machine has are replaced."""
+def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look) -> frozenset[str]:
+    """Write a name and below it lines of facts; return the letters of the name that no font has, and are replaced."""
     letters = lettering([name])
     ax.set_title(
         letters.written(name),
@@ -178,3 +178,4 @@ def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look)
         fontsize=9.5,
         color=look.faint_ink,
     )
+    return letters.missing

@@ -50,6 +50,13 @@ def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "li
     InvalidInput
         With every argument that is something else.
     """
+    return drawn_plan(farm_plan, ax, theme=theme, units=units)[0]
+
+
+def drawn_plan(
+    farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "light", units: Units = "metric"
+) -> tuple[Axes, frozenset[str]]:
+    """Draw as `plot_plan`; return the axes, and the letters of names that no font of the machine has."""
     arguments = Arguments()
     arguments.kind("farm_plan", farm_plan, FarmPlan, PLAN_WANTED)
     _check_look(arguments, ax, theme, units)
@@ -74,10 +81,9 @@ def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "li
     )
     draw_shading_key(ax, look)
     draw_scale_bar(ax, look, units)
-    draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look)
+    unwritten = draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look)
     write_legend(ax, look)
-    write_title(ax, farm.name, _facts(farm_plan, units), look)
-    return ax
+    return ax, unwritten | write_title(ax, farm.name, _facts(farm_plan, units), look)
 
 
 def _drone_label(farm_plan: FarmPlan, drone: int, units: Units) -> str:
