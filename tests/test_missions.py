@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import pondhop
 import pondhop.missions
 from hand_made import DEPOT, make_farm, make_plan, square, two_drones
 from pondhop import plan as pondhop_plan
@@ -24,7 +25,7 @@ from pondhop.missions.formats.qgroundcontrol import parse_qgroundcontrol_plan, q
 from pondhop.missions.formats.waypoints import parse_waypoints, waypoints
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Action, Mission, MissionItem, build_mission
-from pondhop.solution import FarmPlan, FarmViolation
+from pondhop.solution import FarmPlan, FarmViolation, Solution
 from pondhop.units import clock_text
 
 STYLES = [Fleet(num_drones=2), Fleet(num_drones=2, sampling="splashdown", dwell_s=30)]
@@ -144,6 +145,19 @@ def test_every_drone_flies_out_in_a_layer_of_its_own() -> None:
     assert check(third) == []
     lowest = build_mission(0, make_farm(), fleet, [1, 0])
     assert len(lowest.items) == len(third.items) - 1
+
+
+def test_drones_fly_out_in_the_layers_of_the_plan_where_all_come_home_above() -> None:
+    ponds = tuple(Pond(f"P{number}", (-89.0 + 0.0004 * number, 37.001)) for number in range(-12, 13))
+    farm, fleet = make_farm(ponds=ponds), Fleet(num_drones=25)
+    problem = farm.to_problem(fleet, are_layers_stacked=True)
+    plan = pondhop.evaluate(problem, [[pond] for pond in range(25)])
+    solution = Solution(problem, plan, "by hand", seed=1, elapsed_s=0.0)
+    farm_plan = FarmPlan(farm, fleet, solution, are_layers_stacked=True)
+    # So many layers above each other need a smaller spacing than where they may lie between each other.
+    assert farm_plan.layers.spacing_m < fleet.layers(25).spacing_m
+    heights_m = [mission.items[0].height_m for mission in pondhop.missions._missions(farm_plan)]
+    assert heights_m == pytest.approx([farm_plan.layers.way_out_height_m(drone) for drone in range(25)])
 
 
 def parameters(path: Path) -> dict[str, float]:

@@ -250,7 +250,7 @@ class FarmPlan:
         """Whether the plan can be flown."""
         return not self.violations
 
-    @property
+    @cached_property
     def layers(self) -> Layers:
         """At which heights the drones fly out to their first pond and come home."""
         return self.fleet.layers(len(self.farm.ponds), are_stacked=self.are_layers_stacked)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
@@ -134,6 +135,11 @@ class Fleet:
         still_default = tuple(name for name in self.assumptions if getattr(self, name) == defaults[name])
         object.__setattr__(self, "assumptions", still_default)
 
+    @cached_property
+    def _lowest(self) -> Layers:
+        """The heights of the lowest drone: those of one that flies alone."""
+        return self.layers(1)
+
     @property
     def stop_s(self) -> float:
         """What stopping and starting adds to a leg."""
@@ -142,7 +148,7 @@ class Fleet:
     @property
     def takeoff_s(self) -> float:
         """Time of the first take-off of a route, until the drone flies its first leg, for the lowest drone."""
-        return times.takeoff_s(self, self.layers(1).way_out_m)
+        return times.takeoff_s(self, self._lowest.way_out_m)
 
     @property
     def service_s(self) -> float:
@@ -174,7 +180,7 @@ class Fleet:
     @property
     def way_home_fixed_s(self) -> float:
         """What the way home takes besides its length, for the lowest drone."""
-        return times.way_home_fixed_s(self, self.layers(1).way_home_m)
+        return times.way_home_fixed_s(self, self._lowest.way_home_m)
 
     def num_flying(self, num_ponds: int) -> int:
         """Return how many drones can fly a round over so many ponds: none flies without a pond."""
@@ -216,11 +222,11 @@ class Fleet:
     def energy(self) -> Energy:
         """What flying takes from the battery, for the lowest drone."""
         return Energy(
-            takeoff_j=times.takeoff_j(self, self.layers(1).way_out_m),
+            takeoff_j=times.takeoff_j(self, self._lowest.way_out_m),
             leg_w=times.power_w(self, self.speed_m_s),
             leg_stop_w=self.hover_power_w,
             way_home_w=times.power_w(self, self.return_speed_m_s),
-            way_home_fixed_j=times.way_home_fixed_j(self, self.layers(1).way_home_m),
+            way_home_fixed_j=times.way_home_fixed_j(self, self._lowest.way_home_m),
             usable_j=self.usable_energy_j,
         )
 

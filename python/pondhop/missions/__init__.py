@@ -232,7 +232,7 @@ def _too_far(farm_plan: FarmPlan, units: Units) -> list[FarmViolation]:
 
 def _missions(farm_plan: FarmPlan) -> list[Mission]:
     return [
-        build_mission(drone, farm_plan.farm, farm_plan.fleet, route)
+        build_mission(drone, farm_plan.farm, farm_plan.fleet, route, farm_plan.layers)
         for drone, route in enumerate(farm_plan.solution.plan.routes)
     ]
 
