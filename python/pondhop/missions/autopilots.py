@@ -27,10 +27,12 @@ RADIUS_MARGIN_M = 50.0
 """The same for the radius of a fence around home."""
 
 MAX_FENCE_RADIUS_M = 10_000.0
-"""The largest circle around home that ArduPilot keeps a drone in."""
+"""The largest circle around home that ArduPilot keeps a drone in: FENCE_RADIUS is 30 to 10000 m, as the @Range of
+libraries/AC_Fence/AC_Fence.cpp says; FENCE_ALT_MAX is 10 to 1000 m there."""
 
 MAX_DISARM_DELAY_S = 127
-"""The longest that ArduPilot waits on the ground before it disarms; 0 is for ever."""
+"""The longest that ArduPilot waits on the ground before it disarms; 0 is for ever (DISARM_DELAY in
+ArduCopter/Parameters.cpp, @Range 0 to 127)."""
 
 LANDING_WIND_LIMIT_M_S = 5.0
 """Above this wind the landings of a simulated 3 kg quadcopter never ended."""
