@@ -66,6 +66,9 @@ _MODULE_OF = {
     "write_plan_json": "files.plan_json",
 }
 
+_MODULES = ("_core", "errors", "plot")
+"""Modules that `import pondhop` alone makes reachable."""
+
 __all__ = [
     "PLANNERS",
     "Energy",
@@ -106,8 +109,8 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """Import the module of a public name when the name is first used, so that `import pondhop` stays light."""
-    if name == "plot":
-        return import_module("pondhop.plot")
+    if name in _MODULES:
+        return import_module(f"pondhop.{name}")
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'pondhop' has no attribute {name!r}")
     value: object = getattr(import_module(f"pondhop.{_MODULE_OF[name]}"), name)

@@ -69,18 +69,6 @@ class Arguments:
             return self.refuse(name, value, action)
         return "\0" not in os.fspath(value) or self.refuse(name, value, action)
 
-    def position(self, name: str, value: object) -> bool:
-        """Whether a value is a longitude and a latitude in degrees."""
-        action = "give longitude and latitude in degrees, as in (-90.9, 33.4)"
-        try:
-            degrees = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError):
-            return self.refuse(name, value, action)
-        if degrees.shape != (2,) or np.ma.is_masked(value):
-            return self.refuse(name, value, action)
-        is_on_globe = abs(degrees[0]) <= 180.0 and abs(degrees[1]) <= 90.0
-        return bool(is_on_globe) or self.refuse(name, value, action)
-
     def array(self, name: str, value: object, action: str) -> bool:
         """Whether a value is an array of numbers, of which none is masked."""
         is_good = isinstance(value, np.ndarray) and value.dtype.kind in "iuf" and not np.ma.is_masked(value)
