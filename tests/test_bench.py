@@ -142,6 +142,8 @@ def test_every_combination_is_asked_for() -> None:
     )
     assert len({one.key for one in asked}) == len(asked) == 2 * 2 * 2 * 2 * 3
     assert [entrant.options for entrant in parse_entrants("hpp, hpp:threads=2")] == [{}, {"threads": 2}]
+    (entrant,) = parse_entrants("auto:has_separate_airspace=True")
+    assert entrant.options == {"has_separate_airspace": True}
 
 
 def test_parallel_runs_give_the_results_of_serial_ones(tmp_path: Path) -> None:
@@ -425,7 +427,7 @@ def test_all_faults_of_a_command_are_named_at_once(tmp_path: Path) -> None:
         "planner hpq: planner",
         "planner hpp:threads=0: threads",
         "planner hpp:thread=2",
-        "planner hpp:threads=two",
+        "planner hpp:threads=two: threads",
         "planner nowhere:mine",
         "planner hpp",
     ]

@@ -200,15 +200,24 @@ def test_a_written_plan_can_be_judged_and_drawn(run: Run, tmp_path: Path) -> Non
     assert Path(json.loads(drawn.out)["figure"]).stat().st_size > 1000
 
 
+def test_a_plan_is_judged_and_drawn_in_feet_and_miles(run: Run, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install matplotlib")
+    farm_plan = make_plan(make_farm(), Fleet(num_drones=1, max_route_length_m=300.0), [[0, 1, 2, 3, 4]])
+    write_plan_json(tmp_path / "plan.json", farm_plan)
+    judged = run("evaluate", tmp_path / "plan.json", "--units", "us")
+    assert "max_route_length_m is 984 ft" in " ".join(judged.out.split())
+    assert run("plot", tmp_path / "plan.json", "--units", "us", "-o", tmp_path / "plan.svg").code == 0
+
+
 def test_a_drawing_says_what_the_file_does_not(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed: pip install matplotlib")
     farm = make_farm(no_fly=((square(-89.0015, 37.001, 0.0002),),))
     write_plan_json(tmp_path / "plan.json", make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3, 4]]))
     drawn: list[FarmPlan] = []
 
-    def plot_plan(farm_plan: FarmPlan) -> "Axes":
+    def plot_plan(farm_plan: FarmPlan, **options: Any) -> "Axes":
         drawn.append(farm_plan)
-        return draw(farm_plan)
+        return draw(farm_plan, **options)
 
     draw = plot.plot_plan
     monkeypatch.setattr(plot, "plot_plan", plot_plan)
@@ -379,6 +388,44 @@ def test_ctrl_c_ends_without_a_traceback(tmp_path: Path) -> None:
         _, err = process.communicate()
     assert process.returncode == 130
     assert "Traceback" not in err
+
+
+STOPPING = [(signal.SIGINT, 130, "with Ctrl-C"), (signal.SIGTERM, 143, "by SIGTERM")]
+
+SIGNAL_AT_AN_IMPORT = """
+import os, sys
+
+module, number = sys.argv[1], int(sys.argv[2])
+del sys.argv[1:3]
+
+class SignalAt:
+    def find_spec(self, name, path=None, target=None):
+        if name == module:
+            os.kill(os.getpid(), number)
+
+sys.meta_path.insert(0, SignalAt())
+from pondhop.__main__ import main
+
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize("module", ["pondhop.cli", "typer", "numpy", "pondhop._core", "shapely", "pondhop.outputs"])
+@pytest.mark.parametrize(("number", "code", "how"), STOPPING)
+def test_a_signal_while_modules_are_imported_is_told_in_a_line(
+    module: str, number: int, code: int, how: str, tmp_path: Path
+) -> None:
+    plan = ["plan", str(FARM), "--drones", "3", "-o", str(tmp_path / "out")]
+    command = [sys.executable, "-c", SIGNAL_AT_AN_IMPORT, module, str(int(number)), *plan]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (code, "", f"pondhop: stopped {how}\n")
+    assert not (tmp_path / "out").exists()
+
+
+def test_python_runs_the_package_as_a_command() -> None:
+    ran = subprocess.run([sys.executable, "-m", "pondhop", "--version"], capture_output=True, text=True, check=True)
+    assert ran.stdout.startswith("pondhop ")
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="needs SIGPIPE")

@@ -95,6 +95,11 @@ def test_imports_stay_light(module: str) -> None:
     assert not {"matplotlib", "pyogrio", "shapely", "pyproj", "torch", "ortools"} & set(loaded)
 
 
+def test_modules_are_reachable_without_an_import_of_their_own() -> None:
+    code = "import pondhop; pondhop._core.hpp_clusters, pondhop.errors.Fault, pondhop.plot.plot_plan"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
 def test_the_planning_command_loads_no_drawing() -> None:
     modules = "pondhop.cli, pondhop.planners, pondhop.outputs, pondhop.cli.printed"
     code = f"import json, sys, {modules}; print(json.dumps(sorted(sys.modules)))"

@@ -11,12 +11,14 @@ from typing import Any
 
 import pytest
 
+import pondhop
 import pondhop.missions
 from hand_made import DEPOT, make_farm, make_plan, square, two_drones
 from pondhop import plan as pondhop_plan
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import Fleet, SamplingStyle
+from pondhop.fleet.settings import NUMBERS
 from pondhop.missions import write_missions
 from pondhop.missions.autopilots import ARDUPILOT
 from pondhop.missions.check import broken_rules
@@ -24,7 +26,7 @@ from pondhop.missions.formats.qgroundcontrol import parse_qgroundcontrol_plan, q
 from pondhop.missions.formats.waypoints import parse_waypoints, waypoints
 from pondhop.missions.mavlink import MavlinkItem, from_mavlink, to_mavlink
 from pondhop.missions.mission import Action, Mission, MissionItem, build_mission
-from pondhop.solution import FarmPlan, FarmViolation
+from pondhop.solution import FarmPlan, FarmViolation, Solution
 from pondhop.units import clock_text
 
 STYLES = [Fleet(num_drones=2), Fleet(num_drones=2, sampling="splashdown", dwell_s=30)]
@@ -160,9 +162,61 @@ def test_every_drone_flies_out_in_a_layer_of_its_own() -> None:
     assert len(lowest.items) == len(third.items) - 1
 
 
+def test_drones_fly_out_in_the_layers_of_the_plan_where_all_come_home_above() -> None:
+    ponds = tuple(Pond(f"P{number}", (-89.0 + 0.0004 * number, 37.001)) for number in range(-12, 13))
+    farm, fleet = make_farm(ponds=ponds), Fleet(num_drones=25)
+    problem = farm.to_problem(fleet, are_layers_stacked=True)
+    plan = pondhop.evaluate(problem, [[pond] for pond in range(25)])
+    solution = Solution(problem, plan, "by hand", seed=1, elapsed_s=0.0)
+    farm_plan = FarmPlan(farm, fleet, solution, are_layers_stacked=True)
+    # So many layers above each other need a smaller spacing than where they may lie between each other.
+    assert farm_plan.layers.spacing_m < fleet.layers(25).spacing_m
+    heights_m = [mission.items[0].height_m for mission in pondhop.missions._missions(farm_plan)]
+    assert heights_m == pytest.approx([farm_plan.layers.way_out_height_m(drone) for drone in range(25)])
+
+
 def parameters(path: Path) -> dict[str, float]:
     lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     return {name: float(value) for name, _, value in (line.partition(",") for line in lines)}
+
+
+RANGES = {
+    "WPNAV_SPEED": (10, 2000),
+    "WPNAV_SPEED_UP": (10, 1000),
+    "WPNAV_SPEED_DN": (10, 500),
+    "LAND_SPEED": (30, 200),
+    "LAND_ALT_LOW": (100, 10_000),
+    "RTL_ALT": (30, 300_000),
+    "RTL_SPEED": (1, 2000),
+    "RTL_LOIT_TIME": (0, 60_000),
+    "FENCE_RADIUS": (30, 10_000),
+    "FENCE_ALT_MAX": (10, 1000),
+    "DISARM_DELAY": (0, 127),
+    "WP_SPD": (0.1, 20),
+    "RTL_ALT_M": (0.3, 3000),
+    "RTL_SPEED_MS": (0.01, 20),
+}
+"""What ArduPilot's source documents; `pondhop.fleet.settings` and `pondhop.missions.autopilots` tell where."""
+
+
+@pytest.mark.parametrize("end", ["least", "most"])
+def test_every_setting_that_a_fleet_may_have_is_one_that_the_autopilot_takes(end: str, tmp_path: Path) -> None:
+    names: tuple[str, ...] = (
+        "speed_m_s",
+        "climb_speed_m_s",
+        "descent_speed_m_s",
+        "landing_speed_m_s",
+        "slow_landing_height_m",
+    )
+    names += ("return_speed_m_s", "return_loiter_s", "return_height_m")
+    settings: dict[str, Any] = {name: getattr(NUMBERS[name], end) for name in names}
+    settings |= {"transit_height_m": NUMBERS["transit_height_m"].most if end == "most" else 1.0}
+    fleet = Fleet(1, sampling="splashdown", dwell_s=1.0 if end == "least" else 3600.0, **settings)
+    write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2, 3, 4]]))
+    written = parameters(tmp_path / "drone-1.param") | parameters(tmp_path / "drone-1-4.7.param")
+    assert written.keys() >= RANGES.keys()
+    for name, (least, most) in RANGES.items():
+        assert least <= written[name] <= most, name
 
 
 def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:

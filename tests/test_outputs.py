@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from hand_made import make_farm, make_plan, square, two_drones
-from pondhop import instances, outputs
+from pondhop import cli, instances, outputs, planners
 from pondhop.documents import atomic
 from pondhop.errors import InvalidInput
 from pondhop.fleet import Fleet
@@ -101,7 +102,7 @@ def test_a_failure_while_writing_leaves_the_old_plan(
     with pytest.raises(type(error)):
         outputs.write_outputs(folder, one_drone(), has_figure=False)
     assert contents(folder) == before
-    assert not [path for path in folder.iterdir() if path.name.startswith(atomic.STAGING_PREFIX)]
+    assert left_behind(folder) == []
 
 
 @pytest.mark.parametrize("after", [0, 1, 7, 14, 15, 16, 20, 23])
@@ -125,6 +126,142 @@ def test_a_failure_while_swapping_leaves_the_old_plan(
         outputs.write_outputs(folder, one_drone(), has_figure=False)
     monkeypatch.undo()
     assert contents(folder) == before
+
+
+def left_behind(folder: Path) -> list[str]:
+    return [path.name for path in folder.iterdir() if path.name.startswith(atomic.STAGING_PREFIX)]
+
+
+SIGNAL_AT_A_STEP = """
+import os, shutil, signal, sys
+from pathlib import Path
+
+from hand_made import two_drones
+from pondhop import outputs
+from pondhop.documents.signals import STOPS
+
+folder, step, left, number = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
+owner = {"rename": Path, "unlink": os, "rmtree": shutil}[step]
+function = getattr(owner, step)
+
+def signalled(*arguments, **options):
+    global left
+    left -= 1
+    if left == -1:
+        os.kill(os.getpid(), number)
+    return function(*arguments, **options)
+
+setattr(owner, step, signalled)
+with STOPS.raised():
+    outputs.write_outputs(folder, two_drones(), has_figure=False)
+"""
+
+
+def signalled_write(folder: Path, step: str, after: int, number: int) -> int:
+    command = [sys.executable, "-c", SIGNAL_AT_A_STEP, str(folder), step, str(after), str(int(number))]
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent)}
+    return subprocess.run(command, env=environment, stderr=subprocess.DEVNULL, check=False).returncode
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    ("step", "after"), [("rename", 0), ("rename", 9), ("rename", 17), ("unlink", 0), ("unlink", 5), ("rmtree", 0)]
+)
+def test_nothing_is_left_of_a_write_that_a_signal_stops(step: str, after: int, number: int, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    outputs.write_outputs(folder, one_drone(), has_figure=False)
+    assert signalled_write(folder, step, after, number) != 0
+    outputs.write_outputs(tmp_path / "fresh", two_drones(), has_figure=False)
+    assert left_behind(folder) == []
+    # The swap is not torn: the new plan is there before anybody hears of the signal.
+    assert contents(folder) == contents(tmp_path / "fresh")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize("after", [0, 1, 4, 7, 8, 9, 10, 15, 20, 23])
+def test_what_a_killed_write_left_goes_with_the_next_plan(after: int, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    outputs.write_outputs(folder, one_drone(), has_figure=False)
+    # Nine old files go out, fifteen new ones come in.
+    assert signalled_write(folder, "rename", after, signal.SIGKILL) == -signal.SIGKILL
+    assert len(left_behind(folder)) == 1
+    outputs.write_outputs(folder, two_drones(), has_figure=False)
+    outputs.write_outputs(tmp_path / "fresh", two_drones(), has_figure=False)
+    assert contents(folder) == contents(tmp_path / "fresh")
+    assert left_behind(folder) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no locks to tell by")
+def test_only_what_is_surely_ours_is_removed(tmp_path: Path) -> None:
+    mark = atomic._mark_text()
+    kept: dict[str, dict[str, bytes]] = {
+        ".pondhop-mine": {"pondhop.txt": mark},
+        ".pondhop-abcdefgh": {"notes.txt": b"the user's own"},
+        ".pondhop-bcdefghi": {"pondhop.txt": mark, "notes.txt": b"the user's own"},
+        ".pondhop-cdefghij": {"pondhop.txt": b"made on another machine"},
+        ".pondhop-defghijk": {},
+    }
+    for name, files in {**kept, ".pondhop-efghijkl": {"pondhop.txt": mark, "new/plan.json": b""}}.items():
+        (tmp_path / name).mkdir()
+        for path, content in files.items():
+            (tmp_path / name / path).parent.mkdir(exist_ok=True)
+            (tmp_path / name / path).write_bytes(content)
+    (tmp_path / ".pondhop-fghijklm").symlink_to(tmp_path / ".pondhop-mine")
+    with atomic._temporary_folder(tmp_path) as in_use:
+        outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
+        assert sorted(left_behind(tmp_path)) == sorted([*kept, ".pondhop-fghijklm", in_use.name])
+    assert not in_use.exists()
+
+
+@pytest.mark.parametrize("name", ["plan.json", "plan.svg", "missions/README.txt", "missions"])
+def test_a_folder_that_will_be_refused_is_told_before_planning(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def plan(*_: object, **__: object) -> None:
+        raise AssertionError("planned all the same")
+
+    monkeypatch.setattr(planners, "plan", plan)
+    (tmp_path / "out" / name).parent.mkdir(parents=True)
+    (tmp_path / "out" / name).write_text("the user's own")
+    farm = Path(__file__).resolve().parents[1] / "examples" / "delta_farm.geojson"
+    monkeypatch.setattr(sys, "argv", ["pondhop", "plan", str(farm), "--drones", "3", "-o", str(tmp_path / "out")])
+    with pytest.raises(SystemExit) as exited:
+        cli.main()
+    assert exited.value.code == 2
+    assert f"{tmp_path / 'out' / name}: " in capsys.readouterr().err
+
+
+def test_a_file_in_the_place_of_the_folder_is_told(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("the user's own")
+    with pytest.raises(InvalidInput, match="there is something else"):
+        outputs.write_outputs(tmp_path / "out", two_drones(), has_figure=False)
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Missions for Test farm, hover-dip",
+        "Missions for Test farm, splashdown, for ArduPilot Copter",
+        "Missions for Delta farm of 120 ponds (made up, seed 1), hover-dip, for ArduPilot\n  Copter",
+    ],
+)
+def test_missions_of_an_earlier_version_are_ours(title: str, tmp_path: Path) -> None:
+    outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
+    (tmp_path / "missions" / "README.txt").write_text(f"{title}\n\nDRONES\n")
+    outputs.write_outputs(tmp_path, one_drone(), has_figure=False)
+    assert (tmp_path / "missions" / "README.txt").read_text().startswith("Pondhop missions for Test farm")
+    assert not (tmp_path / "missions" / "drone-2.plan").exists()
+
+
+@pytest.mark.parametrize(
+    "text", ["Missions for Monday\n\nCall Bob.\n", "Missions for Monday, or\n\nnever, hover-dip\n"]
+)
+def test_what_people_write_of_missions_is_their_own(text: str, tmp_path: Path) -> None:
+    (tmp_path / "missions").mkdir()
+    (tmp_path / "missions" / "README.txt").write_text(text)
+    with pytest.raises(InvalidInput, match="nothing says that it wrote"):
+        outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
 
 
 def test_a_folder_in_the_way_is_told(tmp_path: Path) -> None:
@@ -169,8 +306,10 @@ def test_plans_survive_a_kill(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_stopped_search_is_a_plan_that_says_so(number: int, code: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "code", "how"), [(signal.SIGINT, 130, "with Ctrl-C"), (signal.SIGTERM, 143, "by SIGTERM")]
+)
+def test_a_stopped_search_is_a_plan_that_says_so(number: int, code: int, how: str, tmp_path: Path) -> None:
     farm = Path(__file__).resolve().parents[1] / "examples" / "delta_farm.geojson"
     command = [PONDHOP, "plan", farm, "--drones", 5, "--no-figure", "--time-limit", 600, "-o", tmp_path / "out"]
     process = subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -180,8 +319,11 @@ def test_a_stopped_search_is_a_plan_that_says_so(number: int, code: int, tmp_pat
     process.send_signal(number)
     _, told = process.communicate()
     assert process.returncode == code, told
-    assert "best plan until then" in told
-    assert json.loads((tmp_path / "out" / "plan.json").read_text())["is_interrupted"] is True
+    assert told == f"pondhop: stopped {how}; this is the best plan until then, and plan.json says so\n"
+    document = json.loads((tmp_path / "out" / "plan.json").read_text())
+    assert document["is_interrupted"] is True
+    # Whoever reads the plan later need not know which signal it was, and must not be told the wrong one.
+    assert "The planning was stopped: this is the best plan until then." in document["notes"]
 
 
 def processor_time_s(pid: int) -> float:

@@ -5,12 +5,26 @@ import math
 import pickle
 from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from pondhop import Energy, InvalidInput, Problem, Separation, Violation, evaluate, separation
+import pondhop
+from hand_made import make_farm, two_drones
+from pondhop import (
+    Energy,
+    Fault,
+    Fleet,
+    InvalidInput,
+    LocalFrame,
+    Problem,
+    Separation,
+    Violation,
+    evaluate,
+    separation,
+)
 from pondhop._core import leg_durations, leg_lengths
 
 PONDS = [[30, 0], [30, 40], [0, 40]]
@@ -194,7 +208,7 @@ def test_no_sum_of_extreme_values_is_infinite() -> None:
 def test_an_unknown_argument_is_a_type_error(problem: Problem) -> None:
     with pytest.raises(TypeError, match="num_pilots"):
         problem.replace(num_pilots=1)  # type: ignore[call-arg]
-    with pytest.raises(TypeError, match="Energy"):
+    with pytest.raises(InvalidInput, match=r"energy: it is 357 \(give a pondhop.Energy\)"):
         problem.replace(energy=357)  # type: ignore[arg-type]
 
 
@@ -222,17 +236,68 @@ VALUES: list[tuple[str, Callable[[Problem], object]]] = [
     ("plan", lambda problem: evaluate(problem, [[0, 1], [0]])),
     ("violation", lambda problem: evaluate(problem, [[0, 1], [0]]).violations[0]),
     ("separation", lambda problem: separation(problem, [[0], [1, 2]])),
+    ("frame", lambda _: LocalFrame(-90.9, 33.4)),
+    ("farm", lambda _: make_farm()),
+    ("fleet", lambda _: Fleet(3, battery_wh=200.0)),
+    ("planner", lambda _: pondhop.PLANNERS["hpp"]),
+    ("fault", lambda _: Fault("here", "it is wrong", "mend it")),
 ]
 
 
 @pytest.mark.parametrize("make", [value[1] for value in VALUES], ids=[value[0] for value in VALUES])
 def test_values_are_pickled_and_compared(problem: Problem, make: Callable[[Problem], object]) -> None:
     value = make(problem)
-    for same in (make(problem), pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+    pickled = [pickle.loads(pickle.dumps(value, protocol)) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
+    for same in (make(problem), *pickled, copy.copy(value), copy.deepcopy(value)):
         assert same == value
         assert hash(same) == hash(value)
         assert repr(same) == repr(value)
     assert value != "something else"
+
+
+def test_a_plan_of_a_farm_is_pickled_with_every_protocol() -> None:
+    farm_plan = two_drones()
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+        assert pickle.loads(pickle.dumps(farm_plan, protocol)) == farm_plan
+
+
+MASKED = np.ma.masked_invalid([[1.0, 2.0], [np.nan, 3.0], [4.0, 5.0]])
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("ponds", {"ponds": MASKED}),
+        ("ponds", {"ponds": list(MASKED)}),
+        ("depot", {"depot": MASKED[1]}),
+        ("depot", {"depot": [np.ma.masked, 0.0]}),
+        ("service_durations_s", {"service_durations_s": MASKED[:, 0]}),
+        ("service_energies_j", {"service_energies_j": MASKED[:, 0]}),
+        ("layers", {"layers": np.ma.masked_less(np.ones((2, 4)), 2.0)}),
+        ("speed_m_s", {"speed_m_s": np.ma.masked}),
+        ("way_home_speed_m_s", {"way_home_speed_m_s": MASKED[1, 0]}),
+    ],
+)
+def test_masked_values_are_refused_by_name(name: str, arguments: dict[str, Any]) -> None:
+    with pytest.raises(InvalidInput, match="masked") as error:
+        Problem(**{"depot": [0, 0], "ponds": PONDS, "num_drones": 2, **arguments})
+    assert [fault.path for fault in error.value.faults] == [name]
+
+
+def test_masked_routes_and_places_are_refused_by_name(problem: Problem) -> None:
+    with pytest.raises(InvalidInput, match=r"routes\[0\]\[1\]: there is no pond masked"):
+        evaluate(problem, [np.ma.masked_equal([0, 1, 2], 1)])  # type: ignore[list-item]
+    with pytest.raises(InvalidInput, match="lonlat_deg: some of its values are masked"):
+        LocalFrame(-90.9, 33.4).to_local(MASKED)
+    # Without anything below its mask such an array is like any other.
+    assert Problem([0, 0], np.ma.asarray(PONDS), 2) == Problem([0, 0], PONDS, 2)
+
+
+def test_energy_with_something_changed() -> None:
+    assert ENERGY.replace() == ENERGY
+    assert ENERGY.replace(usable_j=1.0).usable_j == 1.0
+    with pytest.raises(InvalidInput, match="takeoff_j"):
+        ENERGY.replace(takeoff_j="much")  # type: ignore[arg-type]
 
 
 def test_what_differs_is_not_equal(problem: Problem) -> None:

@@ -1,25 +1,26 @@
 """Balanced routes and checked missions for drone fleets that sample aquaculture ponds."""
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
-from pondhop._core import (
-    Energy,
-    LocalFrame,
-    Plan,
-    Problem,
-    Separation,
-    Violation,
-    __version__,
-    evaluate,
-    lower_bound,
-    lower_bound_of_makespan,
-    separation,
-)
-from pondhop.errors import Fault, InvalidInput
+TYPE_CHECKING = False
+"""As `typing.TYPE_CHECKING`, without the time that importing it takes: the command line begins here."""
 
 if TYPE_CHECKING:
     from pondhop import plot
+    from pondhop._core import (
+        Energy,
+        LocalFrame,
+        Plan,
+        Problem,
+        Separation,
+        Violation,
+        __version__,
+        evaluate,
+        lower_bound,
+        lower_bound_of_makespan,
+        separation,
+    )
+    from pondhop.errors import Fault, InvalidInput
     from pondhop.farm import Farm, Pond, generate_farm, read_farm, write_farm
     from pondhop.files.plan_geojson import write_plan_geojson
     from pondhop.files.plan_json import read_plan_json, write_plan_json
@@ -30,20 +31,33 @@ if TYPE_CHECKING:
     from pondhop.solution import FarmPlan, Solution
 
 _MODULE_OF = {
-    "FarmPlan": "solution",
+    "Energy": "_core",
     "Farm": "farm",
+    "FarmPlan": "solution",
+    "Fault": "errors",
     "Fleet": "fleet",
+    "InvalidInput": "errors",
+    "LocalFrame": "_core",
     "PLANNERS": "planners",
+    "Plan": "_core",
     "Pond": "farm",
+    "Problem": "_core",
     "ResearchFarm": "instances",
+    "Separation": "_core",
     "Solution": "solution",
+    "Violation": "_core",
+    "__version__": "_core",
+    "evaluate": "_core",
     "generate": "instances",
     "generate_farm": "farm",
+    "lower_bound": "_core",
+    "lower_bound_of_makespan": "_core",
     "plan": "planners",
     "read_farm": "farm",
     "read_farms": "instances",
     "read_fleet": "fleet",
     "read_plan_json": "files.plan_json",
+    "separation": "_core",
     "solve": "planners",
     "write_farm": "farm",
     "write_farms": "instances",
@@ -51,6 +65,9 @@ _MODULE_OF = {
     "write_plan_geojson": "files.plan_geojson",
     "write_plan_json": "files.plan_json",
 }
+
+_MODULES = ("_core", "errors", "plot")
+"""Modules that `import pondhop` alone makes reachable."""
 
 __all__ = [
     "PLANNERS",
@@ -92,8 +109,8 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """Import the module of a public name when the name is first used, so that `import pondhop` stays light."""
-    if name == "plot":
-        return import_module("pondhop.plot")
+    if name in _MODULES:
+        return import_module(f"pondhop.{name}")
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'pondhop' has no attribute {name!r}")
     value: object = getattr(import_module(f"pondhop.{_MODULE_OF[name]}"), name)

@@ -1,5 +1,5 @@
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, Self, SupportsIndex, final
+from typing import Literal, Self, SupportsIndex, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,7 +30,16 @@ class Energy:
     def way_home_fixed_j(self) -> float: ...
     @property
     def usable_j(self) -> float: ...
-    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, float]]: ...
+    def replace(
+        self,
+        *,
+        takeoff_j: float = ...,
+        leg_w: float = ...,
+        leg_stop_w: float = ...,
+        way_home_w: float = ...,
+        way_home_fixed_j: float = ...,
+        usable_j: float = ...,
+    ) -> Energy: ...
 
 @final
 class Problem:
@@ -101,7 +110,6 @@ class Problem:
     # Shape (k, 4): seconds of take-off and way home, joules of both, for route i in row i.
     @property
     def layers(self) -> NDArray[np.float64]: ...
-    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
 
 _ViolationKind = Literal["unserved", "repeated", "too_many_routes", "too_long", "too_slow", "too_much_energy"]
 
@@ -125,7 +133,6 @@ class Violation:
     def value(self) -> float | None: ...
     @property
     def limit(self) -> float | None: ...
-    def __getnewargs__(self) -> tuple[_ViolationKind, int | None, int | None, float | None, float | None]: ...
 
 @final
 class Plan:
@@ -175,7 +182,6 @@ class Separation:
     def num_crossings(self) -> int: ...
     @property
     def num_depot_leg_crossings(self) -> int: ...
-    def __getnewargs__(self) -> tuple[float, int, int]: ...
 
 @final
 class LocalFrame:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pondhop import _core
+from pondhop.arguments import Arguments, checked_path
 from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
+
+Variant = Literal["authors", "paper"]
 
 MAX_COORDINATE = 1e9
 """Largest coordinate that the core accepts."""
@@ -40,6 +44,16 @@ class ResearchFarm:
     boundary: NDArray[np.float64] | None = None
     spacing: float | None = None
 
+    def __post_init__(self) -> None:
+        arguments = Arguments()
+        arguments.array("depot", self.depot, "give its two coordinates as an array of shape (2,)")
+        arguments.array("ponds", self.ponds, "give positions as an array of shape (n, 2)")
+        if self.boundary is not None:
+            arguments.array("boundary", self.boundary, "give corners as an array of shape (k, 2), or leave it out")
+        if self.spacing is not None:
+            arguments.real("spacing", self.spacing, 0.0, math.inf, "give a positive number, or leave it out")
+        arguments.check()
+
     def to_problem(self, num_routes: int) -> _core.Problem:
         """Return the task of visiting every pond with at most `num_routes` routes.
 
@@ -51,9 +65,7 @@ class ResearchFarm:
         return _core.Problem(self.depot, self.ponds, num_routes)
 
 
-def generate(
-    num_ponds: int, num_farms: int = 1, *, seed: int = 1, variant: Literal["authors", "paper"] = "authors"
-) -> list[ResearchFarm]:
+def generate(num_ponds: int, num_farms: int = 1, *, seed: int = 1, variant: Variant = "authors") -> list[ResearchFarm]:
     """Draw random farms of the unit square as the paper's data set has them.
 
     Ponds lie on a grid inside a random outline, from which grid points are deleted at random; the depot is uniform in
@@ -82,18 +94,13 @@ def generate(
     ----------
     Davis, Mukherjee, Wills, Ouyang. Path Planning Algorithms for Robotic Aquaculture Monitoring, section 3.
     """
-    faults = []
-    if not 1 <= num_ponds <= 10_000_000:
-        faults.append(Fault("num_ponds", f"{num_ponds} ponds cannot be drawn", "ask for 1 to 10000000 ponds"))
-    if num_farms < 1:
-        faults.append(Fault("num_farms", f"{num_farms} farms cannot be drawn", "ask for at least one farm"))
-    if not 0 <= seed < 2**32:
-        faults.append(Fault("seed", f"the seed is {seed}", "give a seed of 0 to 4294967295"))
-    if variant not in ("authors", "paper"):
-        faults.append(Fault("variant", f"there is no variant {variant!r}", "choose 'authors' or 'paper'"))
-    if faults:
-        raise InvalidInput(faults)
-    return [ResearchFarm(*_core.generate(num_ponds, (seed << 32) + index, variant)) for index in range(num_farms)]
+    arguments = Arguments()
+    arguments.whole("num_ponds", num_ponds, 1, 10_000_000, "ask for 1 to 10000000 ponds")
+    arguments.whole("num_farms", num_farms, 1, 2**32, "ask for at least one farm")
+    arguments.whole("seed", seed, 0, 2**32 - 1, "give a seed of 0 to 4294967295")
+    arguments.one_of("variant", variant, get_args(Variant))
+    arguments.check()
+    return [ResearchFarm(*_core.generate(num_ponds, (int(seed) << 32) + index, variant)) for index in range(num_farms)]
 
 
 def read(path: str | Path) -> list[ResearchFarm]:
@@ -104,7 +111,7 @@ def read(path: str | Path) -> list[ResearchFarm]:
     InvalidInput
         As `read_tsplib` and `read_farms`.
     """
-    return [read_tsplib(path)] if Path(path).suffix.lower() == ".tsp" else read_farms(path)
+    return [read_tsplib(path)] if checked_path("path", path).suffix.lower() == ".tsp" else read_farms(path)
 
 
 def read_farms(path: str | Path) -> list[ResearchFarm]:
@@ -117,7 +124,7 @@ def read_farms(path: str | Path) -> list[ResearchFarm]:
     InvalidInput
         With every fault of the file, each with its place (``[3].ponds[17]``).
     """
-    text = _read_text(Path(path))
+    text = _read_text(checked_path("path", path))
     try:
         farms = json.loads(text)
     except json.JSONDecodeError as error:
@@ -139,7 +146,19 @@ def read_farms(path: str | Path) -> list[ResearchFarm]:
 
 
 def write_farms(path: str | Path, farms: Iterable[ResearchFarm]) -> None:
-    """Write farms as `read_farms` reads them; every coordinate comes back to the last bit."""
+    """Write farms as `read_farms` reads them; every coordinate comes back to the last bit.
+
+    Raises
+    ------
+    InvalidInput
+        With what is no name of a file and what is no research farm.
+    OSError
+        If the file cannot be written.
+    """
+    arguments, farms = Arguments(), list(farms) if isinstance(farms, (Iterator, Sequence)) else farms
+    arguments.path("path", path)
+    arguments.all_kind("farms", farms, ResearchFarm, "give research farms, as pondhop.generate returns them")
+    arguments.check()
     write_all({Path(path): farms_json(farms)})
 
 
@@ -176,7 +195,7 @@ def read_tsplib(path: str | Path) -> ResearchFarm:
     ----------
     Reinelt. TSPLIB 95, sections 1 and 2.
     """
-    header, nodes, faults = _parse_tsplib(_read_text(Path(path)))
+    header, nodes, faults = _parse_tsplib(_read_text(checked_path("path", path)))
     place, kind = header.get("TYPE", (str(path), "missing"))
     if kind != "TSP":
         faults.append(Fault(place, f"TYPE is {kind}", "give a file of TYPE: TSP"))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pondhop.documents.atomic import Content, earlier_files, replace_files
+from pondhop.arguments import checked_path
+from pondhop.documents.atomic import Content, check_is_file_or_absent, earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
 from pondhop.files.plan_geojson import plan_geojson
 from pondhop.files.plan_json import BEGINNING, plan_json
-from pondhop.missions import earlier_missions, mission_texts
-from pondhop.solution import FarmPlan
+from pondhop.missions import README, earlier_missions, mission_texts
+from pondhop.solution import FarmPlan, check_written
 from pondhop.units import Units
 
 PLAN_JSON, PLAN_GEOJSON, MISSIONS = "plan.json", "plan.geojson", "missions"
@@ -40,7 +42,9 @@ class Outputs:
     farm_plan: FarmPlan
 
 
-def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units: Units = "metric") -> Outputs:
+def write_outputs(
+    folder: str | os.PathLike[str], farm_plan: FarmPlan, *, has_figure: bool, units: Units = "metric"
+) -> Outputs:
     """Write all that a plan becomes, in place of an earlier plan in the folder, as a whole.
 
     The folder holds all of the new plan or all of the old one, also after a full disk or a signal on the way; files of
@@ -55,7 +59,7 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     has_figure
         Whether to draw it, which needs matplotlib.
     units
-        What the picture tells lengths in.
+        What picture, missions and faults tell lengths in; plan.json and plan.geojson are in metres.
 
     Returns
     -------
@@ -69,35 +73,57 @@ def write_outputs(folder: Path, farm_plan: FarmPlan, *, has_figure: bool, units:
     OSError
         If a file cannot be written; then the folder is as it was.
     """
+    check_written(folder, farm_plan, "folder", units)
+    folder = Path(folder)
+    check_folder(folder)
+    pictures: dict[str, Content] = {}
     if has_figure:
-        farm_plan = _with_note_of_letters(farm_plan)
+        from pondhop import plot
+
+        axes, unwritten = plot.drawn_plan(farm_plan, units=units)
+        pictures = {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
+        farm_plan = _with_note_of_letters(farm_plan, unwritten)
     text = plan_json(farm_plan)
     files: dict[str, Content] = {PLAN_JSON: text, PLAN_GEOJSON: plan_geojson(farm_plan)}
     faults: tuple[Fault, ...] = ()
     try:
-        files |= {f"{MISSIONS}/{name}": text for name, text in mission_texts(farm_plan).items()}
+        files |= {f"{MISSIONS}/{name}": text for name, text in mission_texts(farm_plan, units).items()}
     except InvalidInput as error:
         faults = error.faults
-    if has_figure:
-        from pondhop import plot
-
-        axes = plot.plot_plan(farm_plan, units=units)
-        files |= {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
-    replace_files(folder, files, _earlier(folder))
+    files |= pictures
+    replace_files(folder, files, _earlier(folder), (PLAN_JSON, f"{MISSIONS}/{README}"))
     names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
     return Outputs(tuple(names), text, faults, farm_plan)
 
 
-def _with_note_of_letters(farm_plan: FarmPlan) -> FarmPlan:
-    """Return the plan with a note of the names that the picture cannot show, if there are any."""
-    from pondhop.plot.fonts import REPLACEMENT, lettering
+def check_folder(folder: str | os.PathLike[str]) -> None:
+    """Refuse a folder that `write_outputs` would refuse, before anybody has waited for a plan.
 
-    farm = farm_plan.farm
-    names = [farm.name, *(pond.id for pond in farm.ponds)]
-    missing = lettering(names).missing
+    Raises
+    ------
+    InvalidInput
+        If it is no folder, or a folder, a file of the user's own or the like has the name of one of the files.
+    OSError
+        If the folder cannot be read.
+    """
+    folder = checked_path("folder", folder)
+    for path in (folder, folder / MISSIONS):
+        if os.path.lexists(path) and not path.is_dir():
+            message = "pondhop writes a folder of this name, and there is something else"
+            raise InvalidInput([Fault(str(path), message, "move it away, or choose another folder")])
+    for name in _earlier(folder):
+        check_is_file_or_absent(folder / name)
+
+
+def _with_note_of_letters(farm_plan: FarmPlan, missing: frozenset[str]) -> FarmPlan:
+    """Return the plan with a note of the names that the picture cannot show, if letters are missing."""
     if not missing:
         return farm_plan
-    unwritten = listed(name for name in dict.fromkeys(names) if missing & set(name))
+    from pondhop.plot.fonts import REPLACEMENT
+
+    farm = farm_plan.farm
+    names = dict.fromkeys([farm.name, *(pond.id for pond in farm.ponds)])
+    unwritten = listed(name for name in names if missing & set(name))
     note = (
         f"No font of this machine has all letters of {unwritten}: the picture shows {REPLACEMENT} for those that are "
         "missing. Install a font of that script, as Noto Sans, to see them."

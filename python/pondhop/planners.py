@@ -6,25 +6,26 @@ passed in place of a name: ``solve(problem, planner=my_planner)``.
 
 from __future__ import annotations
 
-import math
+import inspect
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 from functools import partial
-from typing import TYPE_CHECKING, Literal, TypedDict, Unpack, get_args
+from typing import Literal, TypedDict, Unpack, get_args
 
 import numpy as np
 
 from pondhop import _core, missions
-from pondhop._core import Energy, Problem
+from pondhop._core import Problem
+from pondhop.arguments import Arguments, shown
 from pondhop.errors import Fault, InvalidInput
+from pondhop.farm.model import Farm
+from pondhop.fleet import Fleet
+from pondhop.limits import Proofs
 from pondhop.solution import FarmPlan, FarmViolation, Solution
-
-if TYPE_CHECKING:
-    from pondhop.farm.model import Farm
-    from pondhop.fleet import Fleet
 
 Routes = Sequence[Sequence[int]]
 PlannerFunction = Callable[[Problem, int, float | None], Routes]
@@ -58,7 +59,7 @@ _LIMIT_NAMES = {
     "too_much_energy": "what the battery gives above its reserve",
 }
 
-MOST_SECONDS, MOST_THREADS = 1e7, 1024
+LEAST_SECONDS, MOST_SECONDS, MOST_THREADS = sys.float_info.min, 1e7, 1024
 """Beyond these a limit of time or a number of threads is a slip of the fingers."""
 
 Objective = Literal["max", "total"]
@@ -151,6 +152,10 @@ class Planned:
     reason: str = ""
 
 
+def _nothing_more(_options: Options) -> frozenset[str]:
+    return frozenset()
+
+
 @dataclass(frozen=True)
 class Planner:
     """A planner of this package.
@@ -164,7 +169,9 @@ class Planner:
     run
         Plans a problem as wished.
     obeys
-        Fields of `Options` beside seed and progress that it has a use for.
+        Fields of `Options` beside seed and progress that it always has a use for.
+    also_obeys
+        Those that it has a use for besides, where the others are as they are.
     is_airspace_shared
         Whether drones cross each other's airspace, so that separate airspace cannot be asked for.
     """
@@ -173,22 +180,26 @@ class Planner:
     description: str
     run: Callable[[Problem, Options], Planned]
     obeys: frozenset[str]
+    also_obeys: Callable[[Options], frozenset[str]] = _nothing_more
     is_airspace_shared: bool = False
+
+    def passed_over(self, options: Options) -> tuple[str, ...]:
+        """Return the options that were asked for and that the planner has no use for."""
+        obeyed = self.obeys | self.also_obeys(options) | {"seed", "progress"}
+        asked = [item.name for item in fields(options) if getattr(options, item.name) != item.default]
+        return tuple(name for name in asked if name not in obeyed)
 
 
 _OF_SEARCH = frozenset({"time_limit_s", "threads", "iterations", "slack_percent", "objective", "start"})
 _OF_TERRITORY = frozenset({"time_limit_s", "iterations", "has_separate_airspace"})
 
 
-def _passed_over(planner: Planner, options: Options) -> tuple[str, ...]:
-    """Return the options that were asked for and that the planner has no use for."""
-    obeys = planner.obeys
-    if planner.name == "auto":
-        obeys = _OF_TERRITORY if options.has_separate_airspace else _OF_SEARCH
-    elif "decoding" in obeys and options.decoding == "sampling":
-        obeys |= {"iterations"}
-    asked = [item.name for item in fields(options) if getattr(options, item.name) != item.default]
-    return tuple(name for name in asked if name not in obeys | {"seed", "progress"})
+def _of_what_auto_chooses(options: Options) -> frozenset[str]:
+    return _OF_TERRITORY if options.has_separate_airspace else _OF_SEARCH
+
+
+def _of_decoding(options: Options) -> frozenset[str]:
+    return frozenset({"iterations"}) if options.decoding == "sampling" else frozenset()
 
 
 def _search_iterations(problem: Problem, options: Options) -> int | None:
@@ -212,6 +223,10 @@ def _search(problem: Problem, options: Options) -> Planned:
         progress=options.progress,
     )
     return Planned(routes, elapsed_s, is_interrupted)
+
+
+def _hpp(problem: Problem, options: Options) -> Planned:
+    return Planned(*_core.hpp(problem, seed=options.seed))
 
 
 def _territory(problem: Problem, options: Options) -> Planned:
@@ -286,7 +301,8 @@ PLANNERS = {
             "auto",
             "chooses planner and effort from the size of the farm, the time limit and whether airspace is separate",
             _auto,
-            _OF_SEARCH | _OF_TERRITORY,
+            _OF_SEARCH & _OF_TERRITORY,
+            _of_what_auto_chooses,
         ),
         Planner(
             "search",
@@ -298,7 +314,7 @@ PLANNERS = {
         Planner(
             "hpp",
             "the paper's planner: k-means clusters, each flown back and forth; a territory for every drone",
-            lambda problem, options: Planned(*_core.hpp(problem, seed=options.seed)),
+            _hpp,
             frozenset({"has_separate_airspace"}),
         ),
         Planner(
@@ -333,6 +349,7 @@ PLANNERS = {
             "the paper's attention model: trained for the least total; may use more routes than there are drones",
             partial(_attention, "am50"),
             frozenset({"decoding"}),
+            _of_decoding,
             is_airspace_shared=True,
         ),
         Planner(
@@ -340,6 +357,7 @@ PLANNERS = {
             "an attention model trained for the shortest longest route; never more routes than drones",
             partial(_attention, "am_minmax"),
             frozenset({"decoding"}),
+            _of_decoding,
             is_airspace_shared=True,
         ),
     )
@@ -375,13 +393,11 @@ def solve(
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
     wishes = Options(**options)
-    faults = _faults(wishes, problem)
-    chosen = _chosen(planner, faults)
-    if wishes.has_separate_airspace and chosen is not None and chosen.is_airspace_shared:
-        message = f"{chosen.name} lets drones share airspace"
-        faults.append(Fault("has_separate_airspace", message, "use auto or territory"))
+    chosen, planner_faults = _chosen(planner)
+    faults = [*_faults(wishes, problem, chosen), *planner_faults]
     if chosen is None or faults:
         raise InvalidInput(faults)
+    wishes = replace(wishes, seed=int(wishes.seed))
     cpu_start_s = time.process_time()
     planned = chosen.run(_levelled(problem, problem.layers.max(axis=0, initial=0.0)), wishes)
     cpu_s = time.process_time() - cpu_start_s
@@ -394,7 +410,7 @@ def solve(
         cpu_s=cpu_s,
         is_interrupted=planned.is_interrupted,
         reason=planned.reason,
-        passed_over=_passed_over(chosen, wishes),
+        passed_over=chosen.passed_over(wishes),
     )
 
 
@@ -426,6 +442,10 @@ def plan(
     InvalidInput
         As `solve`.
     """
+    arguments = Arguments()
+    arguments.kind("farm", farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
+    arguments.kind("fleet", fleet, Fleet, "give a pondhop.Fleet, as in pondhop.Fleet(num_drones=3)")
+    arguments.check()
     problem = farm.to_problem(fleet)
     solved = solve(problem, planner=planner, **options)
     solution = replace(solved, separation=_core.separation(problem, solved.plan.routes))
@@ -454,9 +474,8 @@ def _levelled(problem: Problem, costs: Sequence[float]) -> Problem:
     if not len(problem.layers):
         return problem
     takeoff_s, way_home_s, takeoff_j, way_home_j = map(float, costs)
-    _, energy = problem.energy.__getnewargs_ex__()
-    energy |= {"takeoff_j": takeoff_j, "way_home_fixed_j": way_home_j}
-    return problem.replace(takeoff_s=takeoff_s, way_home_fixed_s=way_home_s, energy=Energy(**energy), layers=None)
+    energy = problem.energy.replace(takeoff_j=takeoff_j, way_home_fixed_j=way_home_j)
+    return problem.replace(takeoff_s=takeoff_s, way_home_fixed_s=way_home_s, energy=energy, layers=None)
 
 
 def _hungriest_lowest(problem: Problem, routes: Routes) -> Routes:
@@ -497,12 +516,15 @@ def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
     """
     farm, fleet, solution = farm_plan.farm, farm_plan.fleet, farm_plan.solution
     is_separate = options.has_separate_airspace or solution.planner == "territory"
+    proofs = Proofs(solution.problem)
 
     def found(num_drones: int) -> FarmPlan | None:
         try:
             wider = replace(fleet, num_drones=num_drones)
             problem = farm.to_problem(wider)
         except InvalidInput:
+            return None
+        if proofs.is_out_of_reach(problem):
             return None
         for costs in (problem.layers.min(axis=0), problem.layers.max(axis=0)):
             levelled = _levelled(problem, costs)
@@ -542,29 +564,30 @@ def _sized(problem: Problem, options: Options, is_separate: bool) -> Routes:
     return _core.search(problem, seed=options.seed, iterations=steps, objective=options.objective)[0]
 
 
-def _faults(options: Options, problem: Problem) -> list[Fault]:
-    faults = []
-    if not 0 <= options.seed < 2**64:
-        # Python refuses to print numbers of more than some thousand digits.
-        told = f"{options.seed}" if abs(options.seed) < 2**128 else "it"
-        faults.append(Fault("seed", f"{told} is not a whole number from 0 to 2^64 - 1", "choose another seed"))
-    if options.time_limit_s is not None and not 0 < options.time_limit_s <= MOST_SECONDS:
-        message = f"{options.time_limit_s} is not above 0 and at most {MOST_SECONDS:g}"
-        faults.append(Fault("time_limit_s", message, "give seconds, or leave it out"))
-    if not 1 <= options.threads <= MOST_THREADS:
-        faults.append(Fault("threads", f"it is not 1 to {MOST_THREADS}", "give the cores there are"))
-    if options.iterations is not None and not 1 <= options.iterations < 2**63:
-        message = "it is not a whole number from 1 to 2^63 - 1"
-        faults.append(Fault("iterations", message, "give fewer steps, or leave it out"))
-    if not 0 <= options.slack_percent < math.inf:
-        faults.append(Fault("slack_percent", f"{options.slack_percent} is not 0 or more", "give per cent, as in 1.5"))
-    for name, chosen, possible in (
-        ("objective", options.objective, get_args(Objective)),
-        ("decoding", options.decoding, get_args(Decoding)),
-    ):
-        if chosen not in possible:
-            faults.append(Fault(name, f"there is no {name} {chosen!r}", f"choose one of: {', '.join(possible)}"))
-    if options.start is not None:
+def _faults(options: Options, problem: Problem, planner: Planner | None) -> list[Fault]:
+    arguments = Arguments()
+    is_problem = arguments.kind("problem", problem, Problem, "give a pondhop.Problem, as farm.to_problem returns it")
+    arguments.whole("seed", options.seed, 0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
+    if options.time_limit_s is not None:
+        action = f"give seconds above 0 and at most {MOST_SECONDS:g}, or leave it out"
+        arguments.real("time_limit_s", options.time_limit_s, LEAST_SECONDS, MOST_SECONDS, action)
+    arguments.whole("threads", options.threads, 1, MOST_THREADS, f"give the cores there are, 1 to {MOST_THREADS}")
+    if options.iterations is not None:
+        action = "give a whole number from 1 to 2^63 - 1, or leave it out"
+        arguments.whole("iterations", options.iterations, 1, 2**63 - 1, action)
+    action = "give per cent, 0 or more, as in 1.5"
+    arguments.real("slack_percent", options.slack_percent, 0.0, sys.float_info.max, action)
+    arguments.one_of("objective", options.objective, get_args(Objective))
+    arguments.one_of("decoding", options.decoding, get_args(Decoding))
+    is_truth = arguments.truth("has_separate_airspace", options.has_separate_airspace)
+    if is_truth and options.has_separate_airspace and planner is not None and planner.is_airspace_shared:
+        message = f"{planner.name} lets drones share airspace"
+        arguments.faults.append(Fault("has_separate_airspace", message, "use auto or territory"))
+    if options.progress is not None and not callable(options.progress):
+        action = "give a function of the longest route, the iterations and the share of the effort, or leave it out"
+        arguments.refuse("progress", options.progress, action)
+    faults = arguments.faults
+    if options.start is not None and is_problem:
         faults += _start_faults(problem, options.start)
     return faults
 
@@ -584,16 +607,35 @@ def _start_faults(problem: Problem, start: Routes) -> list[Fault]:
     ]
 
 
-def _chosen(planner: str | PlannerFunction, faults: list[Fault]) -> Planner | None:
-    """Return the planner meant, or add the fault that there is none."""
+def _chosen(planner: str | PlannerFunction) -> tuple[Planner | None, list[Fault]]:
+    """Return the planner meant, or the fault that there is none."""
+    action = "give the name of a planner, or a function from problem, seed and time limit to routes"
     if callable(planner):
-        return _timed(planner)
+        if _takes_three(planner):
+            return _timed(planner), []
+        return None, [Fault("planner", f"{_name_of(planner)} does not take problem, seed and time limit", action)]
+    if not isinstance(planner, str):
+        return None, [Fault("planner", f"it is {shown(planner)}", action)]
     if planner not in PLANNERS:
         close = get_close_matches(planner, PLANNERS, n=1)
         action = f"did you mean {close[0]!r}?" if close else f"choose one of: {', '.join(PLANNERS)}"
-        faults.append(Fault("planner", f"there is no planner {planner!r}", action))
-        return None
-    return PLANNERS[planner]
+        return None, [Fault("planner", f"there is no planner {planner!r}", action)]
+    return PLANNERS[planner], []
+
+
+def _takes_three(function: PlannerFunction) -> bool:
+    try:
+        inspect.signature(function).bind(None, None, None)
+    except TypeError:
+        return False
+    except ValueError:
+        # Some functions that are not written in Python do not tell what they take.
+        return True
+    return True
+
+
+def _name_of(function: PlannerFunction) -> str:
+    return str(getattr(function, "__name__", type(function).__name__))
 
 
 def _timed(function: PlannerFunction) -> Planner:
@@ -604,5 +646,4 @@ def _timed(function: PlannerFunction) -> Planner:
         found = function(problem, options.seed, options.time_limit_s)
         return Planned(found, time.perf_counter() - start)
 
-    name = getattr(function, "__name__", type(function).__name__)
-    return Planner(name, (function.__doc__ or "").partition("\n")[0], run, frozenset({"time_limit_s"}))
+    return Planner(_name_of(function), (function.__doc__ or "").partition("\n")[0], run, frozenset({"time_limit_s"}))

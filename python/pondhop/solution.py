@@ -6,19 +6,21 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pondhop import _core
 from pondhop._core import Plan, Problem, Separation, Violation, evaluate
+from pondhop.arguments import Arguments
 from pondhop.farm.features import listed
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet
 from pondhop.fleet.layers import Layers
 from pondhop.fleet.settings import AIRFRAME_SPEED_M_S
 from pondhop.palette import route_colour
-from pondhop.units import counted, duration_text, energy_text, length_text
+from pondhop.units import Units, counted, duration_text, energy_text, length_text, speed_text
 
 NO_NUMBER = "no number of drones is known to keep it"
 
@@ -40,7 +42,7 @@ class Solution:
     cpu_s
         Processor time of all threads of this process while it planned; 0 for a plan that was read.
     is_interrupted
-        Whether Ctrl-C ended the planning; the plan is the best so far.
+        Whether Ctrl-C or another signal ended the planning; the plan is the best so far.
     reason
         What `auto` chose and why; empty for other planners.
     passed_over
@@ -60,6 +62,12 @@ class Solution:
     reason: str = ""
     passed_over: tuple[str, ...] = ()
     known_lower_bound_s: float | None = None
+
+    def __post_init__(self) -> None:
+        arguments = Arguments()
+        arguments.kind("problem", self.problem, Problem, "give a pondhop.Problem")
+        arguments.kind("plan", self.plan, Plan, "give a pondhop.Plan, as pondhop.evaluate returns it")
+        arguments.check()
 
     # A bound is found when it is asked for: that takes longer than HPP, and whoever needs one does not need the other.
 
@@ -182,21 +190,45 @@ class FarmPlan:
     num_drones_needed: int | None = None
     are_layers_stacked: bool = False
 
+    def __post_init__(self) -> None:
+        arguments = Arguments()
+        arguments.kind("farm", self.farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
+        arguments.kind("fleet", self.fleet, Fleet, "give a pondhop.Fleet")
+        arguments.kind("solution", self.solution, Solution, "give a pondhop.Solution")
+        arguments.all_kind("obstacles", self.obstacles, FarmViolation, "give violations of a farm's plan")
+        arguments.truth("are_layers_stacked", self.are_layers_stacked)
+        arguments.check()
+
     @property
     def violations(self) -> tuple[FarmViolation, ...]:
-        """Every rule that the plan breaks; empty for one that can be flown."""
+        """Every rule that the plan breaks, in metric units; empty for one that can be flown."""
+        return self._violations("metric")
+
+    def _violations(self, units: Units) -> tuple[FarmViolation, ...]:
+        check_units(units)
         broken = self.solution.plan.violations
-        return (*(self._in_words(violation) for violation in broken), *self.obstacles)
+        return (*(self._in_words(violation, units) for violation in broken), *self.obstacles)
 
     @property
     def told_violations(self) -> tuple[FarmViolation, ...]:
         """The violations for people to read: ponds that break the same rule are told once, with their number."""
+        return self.violations_told_in("metric")
+
+    def violations_told_in(self, units: Units) -> tuple[FarmViolation, ...]:
+        """Return `told_violations` in some units.
+
+        Parameters
+        ----------
+        units
+            Of lengths. Those of ``obstacles`` are as they were found: `pondhop.missions.judged` finds them in others.
+        """
+        violations = self._violations(units)
         ponds: dict[tuple[str, str], list[FarmViolation]] = {}
-        for violation in self.violations:
+        for violation in violations:
             if violation.pond is not None:
                 ponds.setdefault((violation.kind, self._without_pond(violation)), []).append(violation)
         told = []
-        for violation in self.violations:
+        for violation in violations:
             alike = ponds.get((violation.kind, self._without_pond(violation)), [violation])
             if len(alike) > 1 and violation.pond is not None:
                 if violation is alike[0]:
@@ -218,7 +250,7 @@ class FarmPlan:
         """Whether the plan can be flown."""
         return not self.violations
 
-    @property
+    @cached_property
     def layers(self) -> Layers:
         """At which heights the drones fly out to their first pond and come home."""
         return self.fleet.layers(len(self.farm.ponds), are_stacked=self.are_layers_stacked)
@@ -276,11 +308,20 @@ class FarmPlan:
 
     def energy_phases(self, drone: int) -> EnergyPhases:
         """Return what a route takes, by phases; drones count from 0 here, as routes do."""
+        arguments = Arguments()
+        most = len(self.solution.plan.routes) - 1
+        arguments.whole("drone", drone, 0, most, f"give the index of a route, 0 to {most}")
+        arguments.check()
         return EnergyPhases(*map(float, self.solution.plan.phase_energies_j[drone]))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user should know before flying, a sentence each."""
+        """What the user should know before flying, a sentence each, in metric units."""
+        return self.notes_told_in("metric")
+
+    def notes_told_in(self, units: Units) -> tuple[str, ...]:
+        """Return the notes with speeds in some units; settings of a fleet are told as its file has them."""
+        check_units(units)
         notes = list(self.farm.notes)
         if self.solution.passed_over:
             notes.append(self.solution.passed_over_text)
@@ -297,10 +338,10 @@ class FarmPlan:
         if fast:
             notes.append(
                 f"The plan counts with {' and '.join(fast)}: the quadcopter of its laws flies at most "
-                f"{AIRFRAME_SPEED_M_S:g} m/s, so see that yours does fly that fast."
+                f"{speed_text(AIRFRAME_SPEED_M_S, units)}, so see that yours does fly that fast."
             )
         if self.solution.is_interrupted:
-            notes.append("The planning was stopped with Ctrl-C: this is the best plan until then.")
+            notes.append("The planning was stopped: this is the best plan until then.")
         return tuple(notes)
 
     def _repr_html_(self) -> str:
@@ -321,7 +362,7 @@ class FarmPlan:
             f"<table><tr>{heads}</tr>{''.join(rows)}</table>" + (f"<ul>{broken}</ul>" if broken else "")
         )
 
-    def _in_words(self, violation: Violation) -> FarmViolation:
+    def _in_words(self, violation: Violation, units: Units) -> FarmViolation:
         pond = None if violation.pond is None else f"pond {self.farm.ponds[violation.pond].id}"
         drone = None if violation.route is None else violation.route + 1
         value, limit = violation.value or 0.0, violation.limit or 0.0
@@ -334,7 +375,8 @@ class FarmPlan:
                 message = f"there are {counted(int(value), 'route')} for {counted(int(limit), 'drone')}"
                 remedy = f"plan again, with {value:.0f} drones if they are there"
             case "too_long":
-                message = f"drone {drone} flies {length_text(value)}, max_route_length_m is {length_text(limit)}"
+                message = f"drone {drone} flies {length_text(value, units)}"
+                message += f", max_route_length_m is {length_text(limit, units)}"
                 remedy = self._more_drones
             case "too_slow":
                 message = f"drone {drone} is under way for {duration_text(value)}"
@@ -355,6 +397,36 @@ class FarmPlan:
         planned = "" if self.solution.planner in ("auto", "search", "territory") else ", planned by auto"
         return f"fly with {self.num_drones_needed} drones{planned}, or leave ponds out"
 
+
+def check_units(units: object) -> None:
+    """Refuse units that are none.
+
+    Raises
+    ------
+    InvalidInput
+        With what was given.
+    """
+    arguments = Arguments()
+    arguments.one_of("units", units, get_args(Units))
+    arguments.check()
+
+
+def check_written(path: object, farm_plan: object, name: str = "path", units: object = "metric") -> None:
+    """Refuse to write what is no plan of a farm, or to what is no file or folder.
+
+    Raises
+    ------
+    InvalidInput
+        With each of them.
+    """
+    arguments = Arguments()
+    arguments.path(name, path)
+    arguments.kind("farm_plan", farm_plan, FarmPlan, PLAN_WANTED)
+    arguments.one_of("units", units, get_args(Units))
+    arguments.check()
+
+
+PLAN_WANTED = "give a plan of a farm, as pondhop.plan returns it"
 
 _MAP_WIDTH = 420.0
 """Of the map in a notebook, in pixels."""

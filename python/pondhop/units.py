@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 Units = Literal["metric", "us"]
-"""What lengths are told in: metres and kilometres, or feet and miles. Times and energies are the same in both."""
+"""What people are told: metres, kilometres and m/s, or feet, miles and mph. Times and energies are the same in both."""
 
 METRES_PER_FOOT = 0.3048
 METRES_PER_MILE = 1609.344
@@ -27,6 +27,11 @@ def length_text(length_m: float, units: Units = "metric") -> str:
 def height_text(height_m: float, units: Units = "metric") -> str:
     """Return a height: ``7 m``, or ``23 ft``."""
     return f"{height_m / METRES_PER_FOOT:.0f} ft" if units == "us" else f"{height_m:g} m"
+
+
+def gap_text(gap_m: float, units: Units = "metric") -> str:
+    """Return a distance of which a part of a foot matters, as the one between two drones: ``2.5 m``, or ``8.2 ft``."""
+    return f"{gap_m / METRES_PER_FOOT:.1f} ft" if units == "us" else f"{gap_m:.3g} m"
 
 
 def speed_text(speed_m_s: float, units: Units = "metric") -> str:

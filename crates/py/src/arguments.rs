@@ -1,13 +1,15 @@
 //! What Python passes in: numbers and arrays of any real type, with faults in the words of the Python API.
 
 use crate::error::to_python;
+use crate::problem::Problem;
 use numpy::PyReadonlyArrayDyn;
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
 use pondhop_core::problem::Layer;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyBool;
+use pyo3::types::{PyBool, PyFloat, PyInt, PyList, PyTuple};
+use std::sync::Arc;
 
 /// A number of any real type, or what is shown of something else. A whole number beyond all floats is infinite.
 pub struct Real(Result<f64, String>);
@@ -31,6 +33,10 @@ impl<'py> FromPyObject<'_, 'py> for Real {
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let py = value.py();
+        let is_plain = value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>();
+        if !is_plain && has_masked(&value)? {
+            return Ok(Self(Err("masked".into())));
+        }
         match value.extract::<f64>() {
             Ok(number) => Ok(Self(Ok(number))),
             Err(error) if error.is_instance_of::<PyOverflowError>(py) => {
@@ -40,6 +46,58 @@ impl<'py> FromPyObject<'_, 'py> for Real {
             Err(error) => Err(error),
         }
     }
+}
+
+/// A seed of random numbers, or what is shown of something else.
+pub struct Seed(Result<u64, String>);
+
+impl Seed {
+    pub const fn of(number: u64) -> Self {
+        Self(Ok(number))
+    }
+
+    pub fn number(self) -> PyResult<u64> {
+        self.0.map_err(|shown| fault("seed", format!("it is {shown}"), "give a whole number from 0 to 2^64 - 1"))
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Seed {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let number = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
+        Ok(Self(number.ok_or_else(|| shortened(&value))))
+    }
+}
+
+/// The argument `problem`.
+pub struct Task(pub Arc<pondhop_core::problem::Problem>);
+
+impl<'py> FromPyObject<'_, 'py> for Task {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match value.cast::<Problem>() {
+            Ok(problem) => Ok(Self(Arc::clone(&problem.get().inner))),
+            Err(_) => Err(fault("problem", format!("it is {}", shortened(&value)), "give a pondhop.Problem")),
+        }
+    }
+}
+
+/// An error with a single fault.
+fn fault(name: &str, message: String, action: &str) -> PyErr {
+    let mut faults = Faults::default();
+    faults.add(name, message, action);
+    faults.into_result(()).map_or_else(|error| to_python(&error), |()| unreachable!("a fault was added"))
+}
+
+/// A count from 0, or the fault that it is none.
+pub fn count(faults: &mut Faults, name: &str, value: &Bound<'_, PyAny>) -> usize {
+    let number = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
+    number.unwrap_or_else(|| {
+        faults.add(name, format!("it is {}", shortened(value)), "give a whole number, 0 or more");
+        0
+    })
 }
 
 /// A whole number of drones. The fault that there is none is left to the core.
@@ -171,6 +229,10 @@ fn real_array<'py>(
     value: &Bound<'py, PyAny>,
 ) -> PyResult<Option<PyReadonlyArrayDyn<'py, f64>>> {
     let py = value.py();
+    if has_masked(value)? {
+        faults.add(name, "some of its values are masked", "leave them out, or fill them with values to plan with");
+        return Ok(None);
+    }
     let array = match py.import("numpy")?.call_method1("asarray", (value,)) {
         Ok(array) => array,
         // Lists of lists of different lengths, or what numpy cannot read.
@@ -188,6 +250,23 @@ fn real_array<'py>(
     Ok(Some(array.call_method1("astype", ("float64",))?.extract()?))
 }
 
+/// Whether a masked array, or a list of them, hides values: numpy would take what lies below the mask for them.
+fn has_masked(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let is_masked = value.py().import("numpy")?.getattr("ma")?.getattr("is_masked")?;
+    if is_masked.call1((value,))?.extract()? {
+        return Ok(true);
+    }
+    if !(value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>()) {
+        return Ok(false);
+    }
+    for item in value.try_iter()? {
+        if is_masked.call1((item?,))?.extract()? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
 fn add_shape_fault(faults: &mut Faults, name: &str, shape: &[usize], action: &str) {
     let comma = if shape.len() == 1 { "," } else { "" };
     let sizes = shape.iter().map(ToString::to_string).collect::<Vec<String>>().join(", ");
@@ -195,7 +274,7 @@ fn add_shape_fault(faults: &mut Faults, name: &str, shape: &[usize], action: &st
 }
 
 /// What is shown of a value in a message.
-fn shortened(value: &Bound<'_, PyAny>) -> String {
+pub fn shortened(value: &Bound<'_, PyAny>) -> String {
     const MAX_SHOWN: usize = 40;
     // Numbers of more digits than Python converts have no representation.
     let Ok(text) = value.repr() else { return "a number of very many digits".into() };

@@ -1,8 +1,8 @@
 //! `pondhop_core::attention`.
 
 use crate::arguments;
+use crate::arguments::{Seed, Task};
 use crate::error::to_python;
-use crate::problem::Problem;
 use numpy::{PyArray2, PyReadonlyArrayDyn, ToPyArray};
 use pondhop_core::attention::{Architecture, Decoding, Model, Variant};
 use pondhop_core::error::{Fault, InvalidInput};
@@ -107,15 +107,16 @@ impl AttentionModel {
     /// ------
     /// ValueError
     ///     If an option has no meaning.
-    #[pyo3(signature = (problem, *, decoding="greedy", num_samples=1, seed=1))]
+    #[pyo3(signature = (problem, *, decoding="greedy", num_samples=1, seed=Seed::of(1)))]
     fn plan(
         &self,
         py: Python<'_>,
-        problem: &Problem,
+        problem: Task,
         decoding: &str,
         num_samples: usize,
-        seed: u64,
+        seed: Seed,
     ) -> PyResult<(Vec<Vec<usize>>, f64)> {
+        let seed = seed.number()?;
         let decoding = match decoding {
             "greedy" => Decoding::Greedy,
             "symmetries" => Decoding::Symmetries,
@@ -128,7 +129,7 @@ impl AttentionModel {
         };
         Ok(py.detach(|| {
             let start = Instant::now();
-            let routes = self.inner.plan(&problem.inner, decoding, seed);
+            let routes = self.inner.plan(&problem.0, decoding, seed);
             (routes, start.elapsed().as_secs_f64())
         }))
     }
@@ -155,11 +156,11 @@ impl AttentionModel {
     fn logits<'py>(
         &self,
         py: Python<'py>,
-        problem: &Problem,
+        problem: Task,
         routes: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let routes = arguments::routes("routes", routes)?;
-        let logits = py.detach(|| self.inner.logits(&problem.inner, &routes)).map_err(|error| to_python(&error))?;
+        let logits = py.detach(|| self.inner.logits(&problem.0, &routes)).map_err(|error| to_python(&error))?;
         Ok(logits.to_pyarray(py))
     }
 

@@ -1,6 +1,6 @@
 //! `pondhop_core::bound`.
 
-use crate::problem::Problem;
+use crate::arguments::Task;
 use pyo3::prelude::*;
 
 /// Bound the longest route of every plan from below.
@@ -14,8 +14,8 @@ use pyo3::prelude::*;
 /// ----------
 /// docs/explanation/bounds.md; Held and Karp, The traveling-salesman problem and minimum spanning trees, 1970 and 1971.
 #[pyfunction]
-pub fn lower_bound(py: Python<'_>, problem: &Problem) -> f64 {
-    py.detach(|| pondhop_core::bound::lower_bound(&problem.inner))
+pub fn lower_bound(py: Python<'_>, problem: Task) -> f64 {
+    py.detach(|| pondhop_core::bound::lower_bound(&problem.0))
 }
 
 /// Bound the makespan of every plan from below.
@@ -30,8 +30,8 @@ pub fn lower_bound(py: Python<'_>, problem: &Problem) -> f64 {
 /// ----------
 /// docs/explanation/bounds.md.
 #[pyfunction]
-pub fn lower_bound_of_makespan(py: Python<'_>, problem: &Problem) -> f64 {
-    py.detach(|| pondhop_core::bound::lower_bound_of_makespan(&problem.inner))
+pub fn lower_bound_of_makespan(py: Python<'_>, problem: Task) -> f64 {
+    py.detach(|| pondhop_core::bound::lower_bound_of_makespan(&problem.0))
 }
 
 /// Bound the total length of every plan from below.
@@ -41,6 +41,6 @@ pub fn lower_bound_of_makespan(py: Python<'_>, problem: &Problem) -> f64 {
 /// float
 ///     A length in the unit of the problem, whatever the number of drones. Durations and limits are not considered.
 #[pyfunction]
-pub fn lower_bound_of_total(py: Python<'_>, problem: &Problem) -> f64 {
-    py.detach(|| pondhop_core::bound::lower_bound_of_total(&problem.inner))
+pub fn lower_bound_of_total(py: Python<'_>, problem: Task) -> f64 {
+    py.detach(|| pondhop_core::bound::lower_bound_of_total(&problem.0))
 }

@@ -1,9 +1,9 @@
 //! `pondhop_core::evaluate`.
 
 use crate::arguments;
+use crate::arguments::Task;
 use crate::error::to_python;
 use crate::plan::Plan;
-use crate::problem::Problem;
 use pyo3::prelude::*;
 
 /// Recompute everything about a plan from bare routes: lengths, schedule, energy, violations.
@@ -25,9 +25,9 @@ use pyo3::prelude::*;
 /// InvalidInput
 ///     If a route names a pond that does not exist.
 #[pyfunction]
-pub fn evaluate(py: Python<'_>, problem: &Problem, routes: &Bound<'_, PyAny>) -> PyResult<Plan> {
+pub fn evaluate(py: Python<'_>, problem: Task, routes: &Bound<'_, PyAny>) -> PyResult<Plan> {
     let routes = arguments::routes("routes", routes)?;
-    py.detach(|| pondhop_core::evaluate::evaluate(&problem.inner, &routes))
-        .map(|inner| Plan::new(&problem.inner, inner))
+    py.detach(|| pondhop_core::evaluate::evaluate(&problem.0, &routes))
+        .map(|inner| Plan::new(&problem.0, inner))
         .map_err(|error| to_python(&error))
 }

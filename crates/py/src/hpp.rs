@@ -1,6 +1,6 @@
 //! `pondhop_core::hpp`.
 
-use crate::problem::Problem;
+use crate::arguments::{Seed, Task};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use std::time::Instant;
@@ -23,13 +23,14 @@ use std::time::Instant;
 /// elapsed_s : float
 ///     Wall time in seconds from the problem's coordinates to finished routes, everything included.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=1))]
-pub fn hpp(py: Python<'_>, problem: &Problem, seed: u64) -> (Vec<Vec<usize>>, f64) {
-    py.detach(|| {
+#[pyo3(signature = (problem, *, seed=Seed::of(1)))]
+pub fn hpp(py: Python<'_>, problem: Task, seed: Seed) -> PyResult<(Vec<Vec<usize>>, f64)> {
+    let seed = seed.number()?;
+    Ok(py.detach(|| {
         let start = Instant::now();
-        let routes = pondhop_core::hpp::plan(&problem.inner, seed);
+        let routes = pondhop_core::hpp::plan(&problem.0, seed);
         (routes, start.elapsed().as_secs_f64())
-    })
+    }))
 }
 
 /// What HPP did with each cluster, for the paper's figure 2.
@@ -45,14 +46,15 @@ pub fn hpp(py: Python<'_>, problem: &Problem, seed: u64) -> (Vec<Vec<usize>>, f6
 ///     Per route: the pond indices in flying order; the pond indices at the corners of the cluster's convex hull,
 ///     counter-clockwise; the corners of the back-and-forth path the route follows, shape (corners, 2), without the depot.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=1))]
+#[pyo3(signature = (problem, *, seed=Seed::of(1)))]
 #[allow(clippy::type_complexity)]
 pub fn hpp_clusters<'py>(
     py: Python<'py>,
-    problem: &Problem,
-    seed: u64,
+    problem: Task,
+    seed: Seed,
 ) -> PyResult<Vec<(Vec<usize>, Vec<usize>, Bound<'py, PyArray2<f64>>)>> {
-    let plan = py.detach(|| pondhop_core::hpp::plan_clusters(&problem.inner, seed));
+    let seed = seed.number()?;
+    let plan = py.detach(|| pondhop_core::hpp::plan_clusters(&problem.0, seed));
     plan.clusters
         .into_iter()
         .map(|cluster| {

@@ -1,12 +1,14 @@
 //! `pondhop_core::plan`.
 
-use crate::error::InvalidInput;
+use crate::arguments::{Real, count, shortened};
+use crate::error::{InvalidInput, to_python};
 use crate::values::{hash_of, table};
 use numpy::{PyArray1, PyArray2, ToPyArray};
+use pondhop_core::error::Faults;
 use pondhop_core::plan::Route;
 use pondhop_core::problem::VehicleType;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyTuple, PyType};
 use std::sync::Arc;
 
 /// A rule that a plan breaks: immutable. Its text is a sentence; its fields say the same to a program.
@@ -44,14 +46,20 @@ impl Violation {
     #[new]
     #[pyo3(signature = (kind, pond=None, route=None, value=None, limit=None))]
     fn new(
-        kind: &str,
-        pond: Option<usize>,
-        route: Option<usize>,
-        value: Option<f64>,
-        limit: Option<f64>,
+        kind: &Bound<'_, PyAny>,
+        pond: Option<&Bound<'_, PyAny>>,
+        route: Option<&Bound<'_, PyAny>>,
+        value: Option<Real>,
+        limit: Option<Real>,
     ) -> PyResult<Self> {
         use pondhop_core::plan::Violation as Kind;
-        let inner = match (kind, pond, route, value, limit) {
+        let mut faults = Faults::default();
+        let pond = pond.map(|pond| count(&mut faults, "pond", pond));
+        let route = route.map(|route| count(&mut faults, "route", route));
+        let value = value.map(|value| value.number(&mut faults, "value", 0.0));
+        let limit = limit.map(|limit| limit.number(&mut faults, "limit", 0.0));
+        faults.into_result(()).map_err(|error| to_python(&error))?;
+        let inner = match (kind.extract::<String>().unwrap_or_default().as_str(), pond, route, value, limit) {
             ("unserved", Some(visit), None, None, None) => Kind::Unserved { visit },
             ("repeated", Some(visit), None, Some(times), Some(1.0)) => {
                 Kind::Repeated { visit, num_times: times as usize }
@@ -71,7 +79,7 @@ impl Violation {
             _ => {
                 let message = "there is no violation of this kind with these fields";
                 let action = "take violations from a plan";
-                return Err(InvalidInput::new_err((vec![(format!("kind {kind:?}"), message, action)],)));
+                return Err(InvalidInput::new_err((vec![(format!("kind {}", shortened(kind)), message, action)],)));
             }
         };
         Ok(Self { inner })
@@ -108,8 +116,8 @@ impl Violation {
         self.fields().4
     }
 
-    fn __getnewargs__(&self) -> Fields {
-        self.fields()
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, Fields) {
+        (slf.get_type(), slf.get().fields())
     }
 
     fn __hash__(&self) -> u64 {

@@ -2,13 +2,13 @@
 
 use crate::arguments::{self, Real};
 use crate::error::to_python;
-use crate::values::{hash_of, table};
+use crate::values::{Reduced, hash_of, reduced, table};
 use numpy::{PyArray1, PyArray2, ToPyArray};
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
 use pondhop_core::problem::{Depot, VehicleType, Visit, WayHome};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyDict;
 use std::iter::repeat;
 use std::sync::Arc;
 
@@ -101,12 +101,30 @@ impl Energy {
         self.inner.usable_energy
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        let settings = PyDict::new(py);
-        for (name, value) in self.fields() {
-            settings.set_item(name, value)?;
+    /// The same with some arguments changed.
+    ///
+    /// Parameters
+    /// ----------
+    /// **changes
+    ///     Arguments as of `Energy`.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput
+    ///     As `Energy`.
+    /// TypeError
+    ///     If there is no such argument.
+    #[pyo3(signature = (**changes))]
+    fn replace<'py>(&self, py: Python<'py>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = self.arguments(py)?;
+        if let Some(changes) = changes {
+            arguments.update(changes.as_mapping())?;
         }
-        Ok((PyTuple::empty(py), settings))
+        py.get_type::<Self>().call((), Some(&arguments))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, &self.arguments(py)?)
     }
 
     fn __hash__(&self) -> u64 {
@@ -120,6 +138,14 @@ impl Energy {
 }
 
 impl Energy {
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let arguments = PyDict::new(py);
+        for (name, value) in self.fields() {
+            arguments.set_item(name, value)?;
+        }
+        Ok(arguments)
+    }
+
     fn fields(&self) -> [(&'static str, f64); 6] {
         [
             ("takeoff_j", self.takeoff_j()),
@@ -175,7 +201,7 @@ impl Energy {
 ///     speeds 1e-6 to 1e6, durations at most 1e9, powers at most 1e9, energies at most 1e12, so that all that is computed from
 ///     them is finite.
 /// TypeError
-///     If `energy` is no `Energy`, or there is no such argument.
+///     If there is no such argument.
 #[pyclass(frozen, eq, module = "pondhop")]
 #[derive(PartialEq)]
 pub struct Problem {
@@ -202,7 +228,7 @@ impl Problem {
         way_home_speed_m_s: Option<Real>,
         way_home_fixed_s: Real,
         service_energies_j: Option<&Bound<'_, PyAny>>,
-        energy: Option<Energy>,
+        energy: Option<&Bound<'_, PyAny>>,
         layers: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut faults = Faults::default();
@@ -231,7 +257,7 @@ impl Problem {
             leg_stop_duration: leg_stop_s.number(&mut faults, "leg_stop_s", 0.0),
             takeoff_duration: takeoff_s.number(&mut faults, "takeoff_s", 0.0),
             way_home,
-            energy: energy.map_or(pondhop_core::problem::Energy::UNKNOWN, |energy| energy.inner),
+            energy: energy.map_or(pondhop_core::problem::Energy::UNKNOWN, |energy| inner_energy(&mut faults, energy)),
             max_length: max_length_m.number(&mut faults, "max_length_m", f64::INFINITY),
             max_duration: max_duration_s.number(&mut faults, "max_duration_s", f64::INFINITY),
         };
@@ -358,8 +384,8 @@ impl Problem {
         self.inner.vehicle_type().max_duration
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
-        Ok((PyTuple::empty(py), self.arguments(py)?))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced::<Self>(py, &self.arguments(py)?)
     }
 
     fn __hash__(&self) -> u64 {
@@ -379,6 +405,16 @@ impl Problem {
         }
         format!("Problem({})", shown.join(", "))
     }
+}
+
+fn inner_energy(faults: &mut Faults, value: &Bound<'_, PyAny>) -> pondhop_core::problem::Energy {
+    value.extract::<Energy>().map_or_else(
+        |_| {
+            faults.add("energy", format!("it is {}", arguments::shortened(value)), "give a pondhop.Energy");
+            pondhop_core::problem::Energy::UNKNOWN
+        },
+        |energy| energy.inner,
+    )
 }
 
 impl Problem {

@@ -1,9 +1,9 @@
 //! `pondhop_core::search`.
 
 use crate::arguments;
+use crate::arguments::{Seed, Task};
 use crate::effort::{check_limits, watched};
 use crate::error::to_python;
-use crate::problem::Problem;
 use pondhop_core::plan::Violation;
 use pondhop_core::search::{Goal, Options, solve};
 use pyo3::exceptions::PyValueError;
@@ -55,13 +55,13 @@ use std::time::Instant;
 /// ValueError
 ///     If an option has no meaning.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=1, time_limit_s=None, iterations=None, threads=1, slack=0.0, objective="max",
+#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, threads=1, slack=0.0, objective="max",
                     start=None, progress=None))]
 #[allow(clippy::too_many_arguments, clippy::needless_pass_by_value)]
 pub fn search(
     py: Python<'_>,
-    problem: &Problem,
-    seed: u64,
+    problem: Task,
+    seed: Seed,
     time_limit_s: Option<f64>,
     iterations: Option<u64>,
     threads: usize,
@@ -71,6 +71,7 @@ pub fn search(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Vec<Vec<usize>>, f64, u64, bool)> {
     let begin = Instant::now();
+    let seed = seed.number()?;
     let goal = match objective {
         "max" => Goal::Max,
         "total" => Goal::Total,
@@ -79,7 +80,7 @@ pub fn search(
     check_effort(time_limit_s, iterations, threads, slack)?;
     let start = start.map(|routes| arguments::routes("start", routes)).transpose()?;
     if let Some(routes) = &start {
-        check_start(problem, routes)?;
+        check_start(&problem, routes)?;
     }
     let (outcome, elapsed_s, is_interrupted) = watched(py, begin, time_limit_s, progress, |clock, watch| {
         let options = Options {
@@ -92,7 +93,7 @@ pub fn search(
             slack,
             start: start.as_deref(),
         };
-        solve(&problem.inner, &options)
+        solve(&problem.0, &options)
     })?;
     Ok((outcome.routes, elapsed_s, outcome.num_iterations, is_interrupted))
 }
@@ -114,8 +115,8 @@ fn check_effort(time_limit_s: Option<f64>, iterations: Option<u64>, threads: usi
 /// Beyond this a mistyped number would exhaust the machine.
 const MAX_THREADS: usize = 1024;
 
-fn check_start(problem: &Problem, routes: &[Vec<usize>]) -> PyResult<()> {
-    let plan = pondhop_core::evaluate::evaluate(&problem.inner, routes).map_err(|error| to_python(&error))?;
+fn check_start(problem: &Task, routes: &[Vec<usize>]) -> PyResult<()> {
+    let plan = pondhop_core::evaluate::evaluate(&problem.0, routes).map_err(|error| to_python(&error))?;
     let is_limit = |violation: &&Violation| {
         matches!(violation, Violation::TooLong { .. } | Violation::TooSlow { .. } | Violation::TooMuchEnergy { .. })
     };

@@ -1,10 +1,12 @@
 //! `pondhop_core::separation`.
 
 use crate::arguments;
+use crate::arguments::{Real, Task, count};
 use crate::error::to_python;
-use crate::problem::Problem;
 use crate::values::hash_of;
+use pondhop_core::error::Faults;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 /// How well a plan keeps the drones apart: immutable.
 ///
@@ -16,6 +18,11 @@ use pyo3::prelude::*;
 ///     Pairs of crossing legs of different routes, legs from and to the depot left aside.
 /// num_depot_leg_crossings
 ///     Pairs of crossing legs of different routes, of which at least one starts or ends at the depot.
+///
+/// Raises
+/// ------
+/// InvalidInput
+///     With every argument that is no number.
 #[pyclass(frozen, eq, module = "pondhop")]
 #[derive(PartialEq)]
 pub struct Separation {
@@ -25,8 +32,18 @@ pub struct Separation {
 #[pymethods]
 impl Separation {
     #[new]
-    fn new(overlap: f64, num_crossings: usize, num_depot_leg_crossings: usize) -> Self {
-        Self { inner: pondhop_core::separation::Separation { overlap, num_crossings, num_depot_leg_crossings } }
+    fn new(
+        overlap: Real,
+        num_crossings: &Bound<'_, PyAny>,
+        num_depot_leg_crossings: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let mut faults = Faults::default();
+        let inner = pondhop_core::separation::Separation {
+            overlap: overlap.number(&mut faults, "overlap", 0.0),
+            num_crossings: count(&mut faults, "num_crossings", num_crossings),
+            num_depot_leg_crossings: count(&mut faults, "num_depot_leg_crossings", num_depot_leg_crossings),
+        };
+        faults.into_result(Self { inner }).map_err(|error| to_python(&error))
     }
 
     /// Area inside the convex hulls of the ponds of at least two routes, as a share of the area of the hull of all ponds.
@@ -47,12 +64,12 @@ impl Separation {
         self.inner.num_depot_leg_crossings
     }
 
-    fn __getnewargs__(&self) -> (f64, usize, usize) {
-        (self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings)
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f64, usize, usize)) {
+        (slf.get_type(), slf.get().fields())
     }
 
     fn __hash__(&self) -> u64 {
-        let (overlap, num_crossings, num_depot_leg_crossings) = self.__getnewargs__();
+        let (overlap, num_crossings, num_depot_leg_crossings) = self.fields();
         hash_of([overlap, num_crossings as f64, num_depot_leg_crossings as f64])
     }
 
@@ -61,6 +78,12 @@ impl Separation {
             "Separation(overlap={:?}, num_crossings={}, num_depot_leg_crossings={})",
             self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings
         )
+    }
+}
+
+impl Separation {
+    const fn fields(&self) -> (f64, usize, usize) {
+        (self.inner.overlap, self.inner.num_crossings, self.inner.num_depot_leg_crossings)
     }
 }
 
@@ -83,9 +106,9 @@ impl Separation {
 /// InvalidInput
 ///     If a route names a pond that does not exist.
 #[pyfunction]
-pub fn separation(py: Python<'_>, problem: &Problem, routes: &Bound<'_, PyAny>) -> PyResult<Separation> {
+pub fn separation(py: Python<'_>, problem: Task, routes: &Bound<'_, PyAny>) -> PyResult<Separation> {
     let routes = arguments::routes("routes", routes)?;
-    py.detach(|| pondhop_core::separation::separation(&problem.inner, &routes))
+    py.detach(|| pondhop_core::separation::separation(&problem.0, &routes))
         .map(|inner| Separation { inner })
         .map_err(|error| to_python(&error))
 }

@@ -1,7 +1,7 @@
 //! `pondhop_core::territory`.
 
+use crate::arguments::{Seed, Task};
 use crate::effort::{check_limits, watched};
-use crate::problem::Problem;
 use pondhop_core::territory::{Options, plan};
 use pyo3::prelude::*;
 use std::time::Instant;
@@ -35,18 +35,19 @@ use std::time::Instant;
 /// ValueError
 ///     If an option has no meaning.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=1, time_limit_s=None, iterations=None, progress=None))]
+#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, progress=None))]
 pub fn territory(
     py: Python<'_>,
-    problem: &Problem,
-    seed: u64,
+    problem: Task,
+    seed: Seed,
     time_limit_s: Option<f64>,
     iterations: Option<u64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Vec<Vec<usize>>, f64, bool)> {
     let begin = Instant::now();
+    let seed = seed.number()?;
     check_limits(time_limit_s, iterations)?;
     watched(py, begin, time_limit_s, progress, |clock, watch| {
-        plan(&problem.inner, &Options { seed, max_iterations: iterations, clock, watch })
+        plan(&problem.0, &Options { seed, max_iterations: iterations, clock, watch })
     })
 }

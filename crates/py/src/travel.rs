@@ -1,6 +1,6 @@
 //! `pondhop_core::travel`.
 
-use crate::problem::Problem;
+use crate::arguments::Task;
 use numpy::{PyArray2, PyArrayMethods};
 use pondhop_core::geometry::Point;
 use pondhop_core::travel::{LegKind, leg_duration, leg_length};
@@ -23,8 +23,8 @@ use pyo3::prelude::*;
 /// MemoryError
 ///     If there is no room for the array.
 #[pyfunction]
-pub fn leg_lengths<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    matrix(py, problem, |length, _| length)
+pub fn leg_lengths<'py>(py: Python<'py>, problem: Task) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    matrix(py, &problem, |length, _| length)
 }
 
 /// Duration of the leg from every place to every other, as `pondhop.evaluate` counts it.
@@ -46,18 +46,18 @@ pub fn leg_lengths<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'p
 /// MemoryError
 ///     If there is no room for the array.
 #[pyfunction]
-pub fn leg_durations<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let vehicle_type = problem.inner.vehicle_type();
-    matrix(py, problem, |length, kind| leg_duration(length, kind, &vehicle_type))
+pub fn leg_durations<'py>(py: Python<'py>, problem: Task) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let vehicle_type = problem.0.vehicle_type();
+    matrix(py, &problem, |length, kind| leg_duration(length, kind, &vehicle_type))
 }
 
 fn matrix<'py>(
     py: Python<'py>,
-    problem: &Problem,
+    problem: &Task,
     value: impl Fn(f64, LegKind) -> f64,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let visits = problem.inner.visits().iter().map(|visit| visit.position);
-    let places: Vec<Point> = std::iter::once(problem.inner.depot().position).chain(visits).collect();
+    let visits = problem.0.visits().iter().map(|visit| visit.position);
+    let places: Vec<Point> = std::iter::once(problem.0.depot().position).chain(visits).collect();
     // Numpy says what it has no memory for; a vector would end the process.
     let array: Bound<'py, PyArray2<f64>> =
         py.import("numpy")?.call_method1("zeros", ((places.len(), places.len()),))?.extract()?;

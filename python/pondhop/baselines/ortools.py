@@ -23,14 +23,16 @@ import signal
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from types import FrameType
 from typing import Any
 
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
 from pondhop._core import Problem
 from pondhop.baselines import integers
+from pondhop.documents.signals import STOPPING_SIGNALS, STOPS
 from pondhop.errors import Fault, InvalidInput
 
 SPAN_COST = 100
@@ -170,7 +172,7 @@ def _parameters(start_s: float, time_limit_s: float | None) -> Any:
 
 
 def _solved(model: _Model, parameters: Any, start_s: float) -> tuple[list[list[int]], float, bool]:
-    with _cancelled_by_ctrl_c(model.routing) as interrupt:
+    with _cancelled_by_signals(model.routing) as interrupt:
         assignment = model.routing.SolveWithParameters(parameters)
         if model.routing.status() == routing_enums_pb2.RoutingSearchStatus.ROUTING_FAIL_TIMEOUT:
             parameters.ClearField("time_limit")
@@ -200,20 +202,19 @@ def _routes(model: _Model, assignment: Any) -> list[list[int]]:
 
 
 @contextmanager
-def _cancelled_by_ctrl_c(routing: Any) -> Iterator[threading.Event]:
-    """Let Ctrl-C cancel the search, where Python would answer it; yield whether it was pressed."""
+def _cancelled_by_signals(routing: Any) -> Iterator[threading.Event]:
+    """Let Ctrl-C cancel the search, and whatever else stops the command line; yield whether it came."""
     interrupt = threading.Event()
-    is_answered = threading.current_thread() is threading.main_thread() and callable(signal.getsignal(signal.SIGINT))
-    if not is_answered:
-        yield interrupt
-        return
 
-    def cancel(*_: object) -> None:
+    def cancel(number: int, _frame: FrameType | None) -> None:
+        STOPS.last = number
         interrupt.set()
         routing.CancelSearch()
 
-    before = signal.signal(signal.SIGINT, cancel)
-    try:
+    with ExitStack() as handlers:
+        for number in STOPPING_SIGNALS if threading.current_thread() is threading.main_thread() else ():
+            before = signal.getsignal(number)
+            # Ctrl-C where Python would answer it; of other signals only those that we answer ourselves.
+            if before == STOPS.stop or (number == signal.SIGINT and callable(before)):
+                handlers.callback(signal.signal, number, signal.signal(number, cancel))
         yield interrupt
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -206,8 +206,6 @@ def _parse_entrant(text: str, faults: list[Fault]) -> Entrant:
         warm_up(entrant)
     except InvalidInput as error:
         faults += [Fault(f"planner {text}: {fault.path}", fault.message, fault.action) for fault in error.faults]
-    except TypeError as error:
-        faults.append(Fault(f"planner {text}", f"an option is of another type: {error}", "give numbers as digits"))
     return entrant
 
 
@@ -232,7 +230,9 @@ def _imported(module_name: str, function_name: str, faults: list[Fault]) -> Plan
     return function
 
 
-def _value(text: str) -> int | float | str:
+def _value(text: str) -> bool | int | float | str:
+    if text in ("True", "False"):
+        return text == "True"
     for number in (int, float):
         try:
             return number(text)

@@ -21,11 +21,8 @@ from pondhop.cli.plan import generate_farm, plan
 from pondhop.cli.research import evaluate, generate, plot, solve
 from pondhop.cli.shared import EXIT_BUG, EXIT_INTERRUPTED, EXIT_INVALID_INPUT, print_faults
 from pondhop.cli.train import train_am
-from pondhop.documents.signals import StopSignals
+from pondhop.documents.signals import SIGNALLED, STOPS
 from pondhop.errors import Fault, InvalidInput
-
-_SIGNALLED = 128
-"""A program that a signal stopped ends with this and the signal's number: 130 for Ctrl-C, 143 for a request to end."""
 
 app = typer.Typer(
     name="pondhop",
@@ -47,12 +44,15 @@ def main() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     arguments = sys.argv[1:]
-    stops = StopSignals()
     try:
-        with stops.raised():
+        with STOPS.raised():
             app(arguments, prog_name="pondhop")
     except SystemExit as ended:
-        raise SystemExit(_SIGNALLED + stops.last if ended.code == EXIT_INTERRUPTED else ended.code) from None
+        if ended.code == EXIT_INTERRUPTED:
+            _exit_stopped()
+        raise SystemExit(ended.code) from None
+    except KeyboardInterrupt:
+        _exit_stopped()
     except InvalidInput as error:
         _print_invalid_input(error.faults, "--json" in arguments)
         sys.exit(EXIT_INVALID_INPUT)
@@ -69,10 +69,20 @@ def main() -> None:
         _exit_with_bug(error, arguments)
 
 
+def _print_version(is_wanted: bool) -> None:
+    if is_wanted:
+        from pondhop import __version__
+
+        typer.echo(f"pondhop {__version__}")
+        raise typer.Exit
+
+
 @app.callback()
 def _pondhop(
-    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of a bug.")] = False,  # noqa: ARG001 - read by main
-    version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of a bug.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version.", callback=_print_version, is_eager=True)
+    ] = False,
 ) -> None:
     """Balanced routes and checked missions for drone fleets that sample aquaculture ponds.
 
@@ -84,11 +94,6 @@ def _pondhop(
     Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with `--require-feasible`, breaks a rule),
     1 a bug, 130 stopped with Ctrl-C, 143 asked to end.
     """
-    if version:
-        from pondhop import __version__
-
-        typer.echo(f"pondhop {__version__}")
-        raise typer.Exit
 
 
 for _command in (plan, solve, evaluate, plot, generate, generate_farm, train_am):
@@ -98,6 +103,12 @@ for _command in (plan, solve, evaluate, plot, generate, generate_farm, train_am)
 def _print_invalid_input(faults: tuple[Fault, ...], as_json: bool) -> None:
     heading = f"pondhop: {len(faults)} {'problem' if len(faults) == 1 else 'problems'} in the input"
     print_faults(faults, "invalid_input", heading, as_json)
+
+
+def _exit_stopped() -> NoReturn:
+    if not STOPS.is_told:
+        typer.echo(f"pondhop: {STOPS.text}", err=True)
+    sys.exit(SIGNALLED + STOPS.last)
 
 
 def _exit_with_bug(error: Exception, arguments: list[str]) -> NoReturn:

@@ -11,11 +11,12 @@ import typer
 
 from pondhop.cli.shared import (
     EXIT_INFEASIBLE,
-    EXIT_INTERRUPTED,
     INSTALL_MATPLOTLIB,
     Json,
     RequireFeasible,
     Seed,
+    UnitsOption,
+    exit_stopped,
     has_matplotlib,
     parse_lonlat,
     print_faults,
@@ -24,6 +25,7 @@ from pondhop.cli.shared import (
     search_progress,
     with_planning_options,
 )
+from pondhop.documents.signals import STOPS
 from pondhop.errors import Fault, InvalidInput
 from pondhop.planners import PlainOptions
 from pondhop.units import counted
@@ -64,7 +66,7 @@ def plan(
         bool | None,
         typer.Option("--figure/--no-figure", help="Draw the plan (PNG and SVG); if not said, where it can be."),
     ] = None,
-    units: Annotated[Literal["metric", "us"], typer.Option(help="Units of lengths, for people.")] = "metric",
+    units: UnitsOption = "metric",
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
     **options: Unpack[PlainOptions],
@@ -83,6 +85,7 @@ def plan(
     if figure:
         require_matplotlib()
     is_drawn = has_matplotlib() if figure is None else figure
+    outputs.check_folder(output)
     chosen_fleet = _fleet(drones, fleet, sampling)
     with progress("Planning", total=4 if is_drawn else 3) as advance:
         read = read_farm(
@@ -109,8 +112,7 @@ def plan(
         heading = "No mission was written, because this plan cannot be flown"
         print_faults(written.faults, "no_missions", heading, as_json)
     if farm_plan.solution.is_interrupted:
-        typer.echo("pondhop: stopped with Ctrl-C; this is the best plan until then, and plan.json says so", err=True)
-        raise typer.Exit(EXIT_INTERRUPTED)
+        exit_stopped(f"{STOPS.text}; this is the best plan until then, and plan.json says so")
     if written.faults or (require_feasible and not farm_plan.is_feasible):
         raise typer.Exit(EXIT_INFEASIBLE)
 

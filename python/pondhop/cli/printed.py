@@ -54,10 +54,10 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
     _print_assumptions(console, farm_plan, units)
 
 
-def print_violations(farm_plan: FarmPlan) -> None:
+def print_violations(farm_plan: FarmPlan, units: Units = "metric") -> None:
     """Print every rule that a plan of a farm breaks, and what to do about it."""
     console = Console(highlight=False, markup=False)
-    for violation in farm_plan.told_violations:
+    for violation in farm_plan.violations_told_in(units):
         drone = "" if violation.drone is None or violation.kind in LIMIT_KINDS else f"drone {violation.drone}, "
         console.print(f"Violation: {drone}{violation.message} -> {violation.remedy}", style="bold red")
 
@@ -197,5 +197,5 @@ def _print_assumptions(console: Console, farm_plan: FarmPlan, units: Units) -> N
     if fleet.assumptions:
         names = ", ".join(fleet.assumptions)
         console.print(f"Assumed, not measured: {names}. Say what is true of your drones in a --fleet file.")
-    for note in farm_plan.notes:
+    for note in farm_plan.notes_told_in(units):
         console.print(f"Note: {note}")

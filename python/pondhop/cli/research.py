@@ -12,10 +12,11 @@ import typer
 
 from pondhop.cli.shared import (
     EXIT_INFEASIBLE,
-    EXIT_INTERRUPTED,
     Json,
     RequireFeasible,
     Seed,
+    UnitsOption,
+    exit_stopped,
     progress,
     require_matplotlib,
     search_progress,
@@ -99,8 +100,7 @@ def solve(
     if output is not None and not as_json and writer.num_plans:
         totals.print()
     if is_stopped:
-        typer.echo(f"pondhop: stopped; {writer.num_plans} of {len(read)} farms are planned", err=True)
-        raise typer.Exit(EXIT_INTERRUPTED)
+        exit_stopped(f"stopped; {writer.num_plans} of {len(read)} farms are planned")
     if require_feasible and totals.num_infeasible:
         raise typer.Exit(EXIT_INFEASIBLE)
 
@@ -111,6 +111,7 @@ def evaluate(
     routes: Annotated[
         int | None, typer.Option(min=1, help="How many routes are allowed; else as many as used.")
     ] = None,
+    units: UnitsOption = "metric",
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
 ) -> None:
@@ -128,12 +129,12 @@ def evaluate(
         from pondhop.files.plan_json import read_plan_json
 
         _check_plan_of_farm(plans)
-        farm_plan = missions.judged(read_plan_json(plans))
+        farm_plan = missions.judged(read_plan_json(plans), units)
         if as_json:
             typer.echo(plans.read_text(), nl=False)
         else:
-            printed.print_farm_plan(farm_plan)
-            printed.print_violations(farm_plan)
+            printed.print_farm_plan(farm_plan, units)
+            printed.print_violations(farm_plan, units)
         is_feasible = farm_plan.is_feasible
     else:
         judgements = _judgements(plans, farms, routes)
@@ -151,6 +152,7 @@ def plot(
     output: Annotated[Path, typer.Option("--output", "-o", help="The picture, .png or .svg.")],
     farms: FarmsOption = None,
     index: Annotated[int, typer.Option(min=0, help="Which of the research farms, from 0.")] = 0,
+    units: UnitsOption = "metric",
     as_json: Json = False,
 ) -> None:
     """Draw a plan: outline, ponds, depot and routes, with their lengths in the legend.
@@ -169,7 +171,7 @@ def plot(
             from pondhop.files.plan_json import read_plan_json
 
             _check_plan_of_farm(plans)
-            axes = figures.plot_plan(missions.judged(read_plan_json(plans)))
+            axes = figures.plot_plan(missions.judged(read_plan_json(plans), units), units=units)
         else:
             farm, routes = _farm_and_routes(plans, farms, index)
             axes = figures.plot_solution(farm.to_problem(max(1, len(routes))), routes, boundary=farm.boundary)

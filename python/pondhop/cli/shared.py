@@ -10,10 +10,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from threading import Timer
-from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Annotated, Literal, NoReturn, Protocol, TypeVar
 
 import typer
 
+from pondhop.documents.signals import STOPS
 from pondhop.errors import Fault, InvalidInput
 from pondhop.planners import PLANNERS
 
@@ -32,6 +33,10 @@ INSTALL_MATPLOTLIB = "install it with: pip install matplotlib"
 
 Json = Annotated[bool, typer.Option("--json", help="Results on stdout and faults on stderr as JSON, for programs.")]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same result, on every machine.")]
+UnitsOption = Annotated[
+    Literal["metric", "us"],
+    typer.Option("--units", help="What people read: metres and m/s, or feet, miles and mph. plan.json has metres."),
+]
 RequireFeasible = Annotated[bool, typer.Option("--require-feasible", help="Exit with 3 if a plan breaks a rule.")]
 
 _PLANNING_OPTIONS: dict[str, tuple[object, object]] = {
@@ -201,3 +206,10 @@ def print_faults(faults: Sequence[Fault], status: str, heading: str, as_json: bo
     typer.echo(heading, err=True)
     for number, fault in enumerate(faults, start=1):
         typer.echo(f"{number:3}. {fault.path}: {fault.message}\n     -> {fault.action}", err=True)
+
+
+def exit_stopped(message: str) -> NoReturn:
+    """End a command that a signal stopped; `main` knows the exit code of the signal."""
+    typer.echo(f"pondhop: {message}", err=True)
+    STOPS.is_told = True
+    raise typer.Exit(EXIT_INTERRUPTED)

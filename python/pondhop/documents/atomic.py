@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import platform
 import re
 import shutil
 import stat
+import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from io import RawIOBase
 from pathlib import Path
 
 from pondhop.documents.signals import signals_held_back
@@ -17,11 +20,15 @@ from pondhop.errors import Fault, InvalidInput
 Content = str | bytes | Iterable[str]
 """Text, written as UTF-8 with the line ends it has, at once or in parts; or bytes."""
 
-_MAX_BEGINNING = 200
+_MAX_BEGINNING = 1_000
 """Bytes of a file that tell whose it is."""
 
 STAGING_PREFIX = ".pondhop-"
 """How the names of temporary folders begin; one is left behind only where the program is killed or the power fails."""
+
+_STAGING_NAME = re.compile(rf"{re.escape(STAGING_PREFIX)}[a-z0-9_]{{8}}")
+_MARK, _NEW, _OLD = "pondhop.txt", "new", "old"
+"""What a temporary folder holds: the file that says whose it is, what is to come, and what has gone."""
 
 
 def write_all(files: Mapping[Path, Content]) -> None:
@@ -45,14 +52,25 @@ def write_all(files: Mapping[Path, Content]) -> None:
     targets = {Path(os.path.realpath(path)): content for path, content in files.items()}
     for path in targets:
         check_is_file_or_absent(path)
-    with _Staging() as staging:
-        staged = [(staging.write(path, content), path) for path, content in targets.items()]
+    for parent in {path.parent for path in targets}:
+        parent.mkdir(parents=True, exist_ok=True)
+    with ExitStack() as stagings:
+        # One in each target folder: a rename is atomic only within a file system.
+        folders = {
+            parent: stagings.enter_context(_temporary_folder(parent))
+            for parent in dict.fromkeys(path.parent for path in targets)
+        }
+        staged = [(folders[path.parent] / _NEW / path.name, path) for path in targets]
+        for temporary, path in staged:
+            _write(temporary, targets[path], path)
         with signals_held_back():
             for temporary, path in staged:
                 temporary.replace(path)
 
 
-def replace_files(folder: Path, files: Mapping[str, Content], earlier: Iterable[str]) -> None:
+def replace_files(
+    folder: Path, files: Mapping[str, Content], earlier: Iterable[str], witnesses: Collection[str] = ()
+) -> None:
     """Put files into a folder in place of earlier ones, as a whole: it holds all of the old files or all of the new.
 
     What goes wrong on the way, a full disk or a signal, leaves the folder as it was. Where nothing can be put right any
@@ -67,6 +85,9 @@ def replace_files(folder: Path, files: Mapping[str, Content], earlier: Iterable[
     earlier
         Paths within the folder of the files that go; those that are not there, and all others, are left alone. A
         folder within that becomes empty goes, too.
+    witnesses
+        Files by which `earlier_files` knows the others: they go last and come first, so that whatever is left where the
+        program was killed is known as ours.
 
     Raises
     ------
@@ -80,12 +101,14 @@ def replace_files(folder: Path, files: Mapping[str, Content], earlier: Iterable[
     old = sorted({name for name in (*earlier, *files) if os.path.lexists(folder / name)})
     for name in old:
         check_is_file_or_absent(folder / name)
+    old.sort(key=lambda name: name in witnesses)
+    new = sorted(files, key=lambda name: name not in witnesses)
     try:
         with _temporary_folder(folder) as staging:
             for name, content in files.items():
-                _write(staging / "new" / name, content, folder / name)
+                _write(staging / _NEW / name, content, folder / name)
             with signals_held_back():
-                _swap(folder, staging, old, list(files))
+                _swap(folder, staging, old, new)
     except BaseException:
         if is_new:
             with suppress(OSError):
@@ -177,9 +200,9 @@ def _swap(folder: Path, staging: Path, old: list[str], new: list[str]) -> None:
 
     try:
         for name in old:
-            move(folder / name, staging / "old" / name)
+            move(folder / name, staging / _OLD / name)
         for name in new:
-            move(staging / "new" / name, folder / name)
+            move(staging / _NEW / name, folder / name)
     except OSError:
         for source, target in reversed(moved):
             target.rename(source)
@@ -192,38 +215,61 @@ def _swap(folder: Path, staging: Path, old: list[str], new: list[str]) -> None:
                     (folder / within).rmdir()
 
 
-class _Staging:
-    """A temporary folder in each target folder: a rename is atomic only within a file system."""
-
-    def __init__(self) -> None:
-        self._folders: dict[Path, tempfile.TemporaryDirectory[str]] = {}
-
-    def __enter__(self) -> _Staging:
-        return self
-
-    def __exit__(self, *_exception: object) -> None:
-        for folder in self._folders.values():
-            folder.cleanup()
-
-    def write(self, path: Path, content: Content) -> Path:
-        """Write the content beside ``path`` and return where it is."""
-        if path.parent not in self._folders:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._folders[path.parent] = _make_temporary_folder(path.parent)
-        temporary = Path(self._folders[path.parent].name) / path.name
-        _write(temporary, content, path)
-        return temporary
-
-
 @contextmanager
 def _temporary_folder(parent: Path) -> Iterator[Path]:
-    with _make_temporary_folder(parent) as name:
-        yield Path(name)
+    """Make a folder in another one, and remove it, whatever comes; so are those that a killed program left there."""
+    _remove_left_behind(parent)
+    ends = ExitStack()
+    try:
+        with signals_held_back(), _named(parent):
+            folder = Path(tempfile.mkdtemp(dir=parent, prefix=STAGING_PREFIX))
+            ends.callback(shutil.rmtree, folder, ignore_errors=True)
+            mark = ends.enter_context((folder / _MARK).open("wb", buffering=0))
+            # Locked before it says whose it is: whoever reads that can tell that we still use the folder.
+            _lock(mark)
+            mark.write(_mark_text())
+        yield folder
+    finally:
+        with signals_held_back():
+            ends.close()
 
 
-def _make_temporary_folder(parent: Path) -> tempfile.TemporaryDirectory[str]:
-    with _named(parent):
-        return tempfile.TemporaryDirectory(dir=parent, prefix=STAGING_PREFIX)
+def _remove_left_behind(parent: Path) -> None:
+    """Remove temporary folders that a killed program left in a folder; any that may be another's stays."""
+    with suppress(OSError):
+        for entry in list(os.scandir(parent)):
+            if _STAGING_NAME.fullmatch(entry.name) and entry.is_dir(follow_symlinks=False):
+                with suppress(OSError), (Path(entry.path) / _MARK).open("rb", buffering=0) as mark:
+                    if _is_left_behind(Path(entry.path), mark):
+                        shutil.rmtree(entry.path, ignore_errors=True)
+
+
+def _is_left_behind(folder: Path, mark: RawIOBase) -> bool:
+    """Whether a folder is a temporary one of ours that no program uses any more."""
+    is_known = {path.name for path in folder.iterdir()} <= {_MARK, _NEW, _OLD}
+    return is_known and mark.read() == _mark_text() and _lock(mark)
+
+
+def _mark_text() -> bytes:
+    # Locks may hold on one machine only where several share a disk, and people have names of their own.
+    user = os.getuid() if sys.platform != "win32" else ""
+    return f"A temporary folder of pondhop, made on {platform.node()} by user {user}.\n".encode()
+
+
+def _lock(file: RawIOBase) -> bool:
+    """Lock an open file until it is closed, at the latest by the end of the program; return whether that could be done.
+
+    Where there are no such locks, no folder is ever taken for one that a killed program left.
+    """
+    if sys.platform == "win32":
+        return False
+    import fcntl
+
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
 
 
 def _write(temporary: Path, content: Content, path: Path) -> None:

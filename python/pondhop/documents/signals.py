@@ -1,11 +1,12 @@
-"""Signals that ask a program to stop: held back where a step must not be torn, and told apart afterwards."""
+"""Signals that ask a program to stop: answered at once, held back where a step must not be torn, told apart."""
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from types import FrameType
 
 STOPPING_SIGNALS = tuple(
@@ -13,9 +14,14 @@ STOPPING_SIGNALS = tuple(
 )
 """What stops a program: Ctrl-C, `kill` and the end of a session, a terminal that is closed."""
 
+SIGNALLED = 128
+"""A program that a signal stopped ends with this and the signal's number: 130 for Ctrl-C, 143 for a request to end."""
+
+_STDERR = 2
+
 
 class Stopped(KeyboardInterrupt):
-    """The program was asked to stop by another signal than Ctrl-C; whatever heeds Ctrl-C heeds it, too."""
+    """The program was asked to stop; whatever heeds Ctrl-C heeds every such signal."""
 
 
 class StopSignals:
@@ -25,27 +31,45 @@ class StopSignals:
     ----------
     last
         Number of the signal; Ctrl-C, until another comes.
+    is_told
+        Whether the user has read that the program was stopped.
     """
 
     def __init__(self) -> None:
         self.last: int = signal.SIGINT
+        self.is_told = False
+
+    @property
+    def text(self) -> str:
+        """What stopped the program, in words."""
+        return _stopped_text(self.last)
 
     @contextmanager
     def raised(self) -> Iterator[None]:
-        """Raise `Stopped` for each of `STOPPING_SIGNALS` but Ctrl-C, unless it is ignored, as under `nohup`."""
-        before = {}
-        for number in STOPPING_SIGNALS:
-            if number != signal.SIGINT and signal.getsignal(number) != signal.SIG_IGN:
-                before[number] = signal.signal(number, self._stop)
-        try:
+        """Raise `Stopped` for each of `STOPPING_SIGNALS`, unless it is ignored, as under `nohup`."""
+        self.last, self.is_told = signal.SIGINT, False
+        with ExitStack() as handlers:
+            for number in _heeded():
+                handlers.callback(signal.signal, number, signal.signal(number, self.stop))
             yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
 
-    def _stop(self, number: int, _frame: FrameType | None) -> None:
+    def stop(self, number: int, _frame: FrameType | None = None) -> None:
+        """Take note of a signal and raise `Stopped`."""
         self.last = number
         raise Stopped
+
+
+STOPS = StopSignals()
+"""Signals are those of the process, so there is one."""
+
+
+def answer_signals_at_once() -> None:
+    """Let each of `STOPPING_SIGNALS` end the program with a line, as long as there is nothing to put right.
+
+    An exception would not do while modules are imported: some libraries swallow it, and Python prints it as a fault.
+    """
+    for number in _heeded():
+        signal.signal(number, _end)
 
 
 @contextmanager
@@ -58,15 +82,29 @@ def signals_held_back() -> Iterator[None]:
         yield
         return
     held: list[int] = []
-    before = {}
-    try:
-        for number in STOPPING_SIGNALS:
-            # A handler that was not set from Python cannot be put back.
-            if signal.getsignal(number) not in (None, signal.SIG_IGN):
-                before[number] = signal.signal(number, lambda number, _frame: held.append(number))
+    # Every handler is put back, whatever those that are already back do about a signal that comes meanwhile.
+    with ExitStack() as handlers:
+        handlers.callback(_deliver, held)
+        for number in _heeded():
+            handlers.callback(signal.signal, number, signal.signal(number, lambda number, _frame: held.append(number)))
         yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        for number in held:
-            signal.raise_signal(number)
+
+
+def _heeded() -> list[int]:
+    """The stopping signals that are not ignored; a handler that was not set from Python cannot be put back."""
+    return [number for number in STOPPING_SIGNALS if signal.getsignal(number) not in (None, signal.SIG_IGN)]
+
+
+def _deliver(numbers: list[int]) -> None:
+    # The first one stops the program, and the user need not stop it twice.
+    for number in numbers[:1]:
+        signal.raise_signal(number)
+
+
+def _stopped_text(number: int) -> str:
+    return "stopped with Ctrl-C" if number == signal.SIGINT else f"stopped by {signal.Signals(number).name}"
+
+
+def _end(number: int, _frame: FrameType | None) -> None:
+    os.write(_STDERR, f"pondhop: {_stopped_text(number)}\n".encode())
+    os._exit(SIGNALLED + number)

@@ -10,7 +10,7 @@ from typing import Any
 
 from pondhop.documents.atomic import write_all
 from pondhop.palette import route_colour
-from pondhop.solution import FarmPlan
+from pondhop.solution import FarmPlan, check_written
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 
@@ -32,9 +32,12 @@ def write_plan_geojson(path: str | os.PathLike[str], farm_plan: FarmPlan) -> Non
 
     Raises
     ------
+    InvalidInput
+        With what is no name of a file or no plan of a farm.
     OSError
         If the file cannot be written.
     """
+    check_written(path, farm_plan)
     write_all({Path(path): plan_geojson(farm_plan)})
 
 

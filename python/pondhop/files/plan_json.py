@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from pondhop._core import Problem, Separation, __version__, evaluate, separation
+from pondhop.arguments import checked_path
 from pondhop.documents.atomic import write_all
 from pondhop.documents.schemas import check_schema, read_json
 from pondhop.errors import InvalidInput
@@ -27,7 +28,7 @@ from pondhop.files.compared import differences, unknown_ponds
 from pondhop.files.plan_parts import fleet_of, read_farm_object
 from pondhop.fleet import Fleet
 from pondhop.places import Ring
-from pondhop.solution import FarmPlan, FarmViolation, Solution
+from pondhop.solution import FarmPlan, FarmViolation, Solution, check_written
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 SCHEMA = "pondhop-plan/2"
@@ -96,9 +97,12 @@ def write_plan_json(path: str | os.PathLike[str], farm_plan: FarmPlan) -> None:
 
     Raises
     ------
+    InvalidInput
+        With what is no name of a file or no plan of a farm.
     OSError
         If the file cannot be written.
     """
+    check_written(path, farm_plan)
     write_all({Path(path): plan_json(farm_plan)})
 
 
@@ -124,7 +128,7 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
     OSError
         If the file cannot be read.
     """
-    content = read_json(path)
+    content = read_json(checked_path("path", path))
     if isinstance(content, dict) and content.get("schema") == plan_json_1.SCHEMA:
         return plan_json_1.farm_plan(content)
     check_schema(content, "plan-2")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from pondhop.arguments import Arguments
 from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet.settings import MAX_HEIGHT_M
 
@@ -60,6 +61,9 @@ def layers_of(fleet: Fleet, num_ponds: int, *, are_stacked: bool = False) -> Lay
     InvalidInput
         If the layers do not fit below the highest allowed flight.
     """
+    arguments = Arguments()
+    arguments.truth("are_stacked", are_stacked)
+    arguments.check()
     num_flying = fleet.num_flying(num_ponds)
     base_m = max(fleet.return_height_m, fleet.transit_height_m)
     num_above = num_flying - 1

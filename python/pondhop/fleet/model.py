@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
 
 from pondhop._core import Energy
+from pondhop.arguments import Arguments, shown
 from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet import times
 from pondhop.fleet.layers import LEAST_SPACING_M, Layers, layers_of
@@ -17,6 +19,9 @@ from pondhop.fleet.settings import DECISIVE, MAX_HEIGHT_M, NUMBERS
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 SamplingStyle = Literal["hover-dip", "splashdown"]
+
+MOST_TIME_S = 1e9
+"""Of a time on station, as the core has it."""
 
 
 @dataclass(frozen=True)
@@ -118,6 +123,10 @@ class Fleet:
         faults = setting_faults(
             {name: value for name, value in values.items() if value is not None or name not in optional}
         )
+        names = [item.name for item in fields(self) if item.name != "assumptions"]
+        arguments = Arguments()
+        arguments.all_of("assumptions", self.assumptions, names)
+        faults += arguments.faults
         if not faults:
             faults = _combined_faults(self)
         if faults:
@@ -125,6 +134,11 @@ class Fleet:
         defaults = {item.name: item.default for item in fields(self)}
         still_default = tuple(name for name in self.assumptions if getattr(self, name) == defaults[name])
         object.__setattr__(self, "assumptions", still_default)
+
+    @cached_property
+    def _lowest(self) -> Layers:
+        """The heights of the lowest drone: those of one that flies alone."""
+        return self.layers(1)
 
     @property
     def stop_s(self) -> float:
@@ -134,7 +148,7 @@ class Fleet:
     @property
     def takeoff_s(self) -> float:
         """Time of the first take-off of a route, until the drone flies its first leg, for the lowest drone."""
-        return times.takeoff_s(self, self.layers(1).way_out_m)
+        return times.takeoff_s(self, self._lowest.way_out_m)
 
     @property
     def service_s(self) -> float:
@@ -156,6 +170,7 @@ class Fleet:
         """
         if service_s is None:
             return self.dwell_s
+        _check_time(service_s)
         return max(0.0, float(round(service_s - (self.service_s - self.dwell_s))))
 
     def service_at(self, service_s: float | None) -> float:
@@ -165,10 +180,13 @@ class Fleet:
     @property
     def way_home_fixed_s(self) -> float:
         """What the way home takes besides its length, for the lowest drone."""
-        return times.way_home_fixed_s(self, self.layers(1).way_home_m)
+        return times.way_home_fixed_s(self, self._lowest.way_home_m)
 
     def num_flying(self, num_ponds: int) -> int:
         """Return how many drones can fly a round over so many ponds: none flies without a pond."""
+        arguments = Arguments()
+        arguments.whole("num_ponds", num_ponds, 0, 2**63, "give a whole number of ponds")
+        arguments.check()
         return max(1, min(self.num_drones, num_ponds))
 
     def layers(self, num_ponds: int, *, are_stacked: bool = False) -> Layers:
@@ -204,17 +222,24 @@ class Fleet:
     def energy(self) -> Energy:
         """What flying takes from the battery, for the lowest drone."""
         return Energy(
-            takeoff_j=times.takeoff_j(self, self.layers(1).way_out_m),
+            takeoff_j=times.takeoff_j(self, self._lowest.way_out_m),
             leg_w=times.power_w(self, self.speed_m_s),
             leg_stop_w=self.hover_power_w,
             way_home_w=times.power_w(self, self.return_speed_m_s),
-            way_home_fixed_j=times.way_home_fixed_j(self, self.layers(1).way_home_m),
+            way_home_fixed_j=times.way_home_fixed_j(self, self._lowest.way_home_m),
             usable_j=self.usable_energy_j,
         )
 
     def service_energy_j(self, service_s: float) -> float:
         """Return what a time on station takes from the battery, in joules."""
+        _check_time(service_s)
         return times.sampling_j(self, service_s)
+
+
+def _check_time(service_s: object) -> None:
+    arguments = Arguments()
+    arguments.real("service_s", service_s, -MOST_TIME_S, MOST_TIME_S, f"give seconds, at most {MOST_TIME_S:g}")
+    arguments.check()
 
 
 def _plain(value: object) -> object:
@@ -233,16 +258,16 @@ def setting_faults(settings: Mapping[str, object]) -> list[Fault]:
     faults = []
     for name, value in settings.items():
         if name == "sampling":
-            if value not in get_args(SamplingStyle):
+            if not isinstance(value, str) or value not in get_args(SamplingStyle):
                 action = f"use one of {', '.join(get_args(SamplingStyle))}"
-                faults.append(Fault(name, f"{value!r} is no way of sampling", action))
+                faults.append(Fault(name, f"{shown(value)} is no way of sampling", action))
             continue
         least, most = NUMBERS[name].least, NUMBERS[name].most
         is_whole = name == "num_drones"
         kinds = (int,) if is_whole else (int, float)
         if isinstance(value, bool) or not isinstance(value, kinds):
             noun = "whole number" if is_whole else "number"
-            faults.append(Fault(name, f"{value!r} is no {noun}", f"give a {noun} from {least:g} to {most:g}"))
+            faults.append(Fault(name, f"{shown(value)} is no {noun}", f"give a {noun} from {least:g} to {most:g}"))
         elif not least <= value <= most:
             # Python refuses to print numbers of more than some thousand digits.
             told = repr(value) if abs(value) < 2**128 or isinstance(value, float) else "it"

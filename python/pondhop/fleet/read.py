@@ -8,6 +8,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from pondhop.arguments import checked_path
 from pondhop.errors import Fault, InvalidInput
 from pondhop.fleet.model import Fleet, setting_faults
 from pondhop.fleet.settings import DECISIVE
@@ -21,7 +22,7 @@ def read_fleet(path: str | Path) -> Fleet:
     InvalidInput
         With every fault of the file: unknown keys, missing and wrong values.
     """
-    path = Path(path)
+    path = checked_path("path", path)
     try:
         settings = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:

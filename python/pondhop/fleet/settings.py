@@ -71,7 +71,17 @@ NUMBERS = {
     "max_route_length_m": Setting(1.0, 1e7, "assumed"),
     "max_route_duration_s": Setting(1.0, 1e6, "assumed"),
 }
-"""Every number of a fleet. Speeds, landings and the wait above home end where ArduPilot's parameters for them do."""
+"""Every number of a fleet. Speeds, landings and the wait above home end where ArduPilot's parameters for them do.
+
+Looked up in the @Range comments of ArduPilot's source, of which ground stations make their warnings:
+
+- libraries/AC_WPNav/AC_WPNav.cpp: WPNAV_SPEED 10 to 2000 cm/s (20 to 2000 in earlier versions, WP_SPD 0.1 to 20 m/s
+  from 4.7), WPNAV_SPEED_UP 10 to 1000, WPNAV_SPEED_DN 10 to 500
+- ArduCopter/Parameters.cpp: LAND_SPEED 30 to 200 cm/s, LAND_ALT_LOW 100 to 10000 cm, RTL_SPEED 0 to 2000 cm/s (0 is
+  WPNAV_SPEED), RTL_LOIT_TIME 0 to 60000 ms, RTL_ALT 30 to 300000 cm (200 to 8000 in earlier versions, which hold it in
+  32 bits all the same)
+- ArduCopter/mode_rtl.cpp, from 4.7: RTL_SPEED_MS 0 to 20 m/s, RTL_ALT_M 0.3 to 3000 m
+"""
 
 AIRFRAME_SPEED_M_S = 10.0
 """The measured quadcopter flies no faster, however it is set: it leans 30 degrees then."""

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from pondhop.arguments import Arguments
 from pondhop.documents.atomic import earlier_files, replace_files
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import Farm, doubt_fault
@@ -27,8 +28,8 @@ from pondhop.missions.parameters import (
     qgroundcontrol_parameters,
 )
 from pondhop.missions.readme import BEGINNING, crew_readme
-from pondhop.solution import FarmPlan, FarmViolation
-from pondhop.units import length_text
+from pondhop.solution import PLAN_WANTED, FarmPlan, FarmViolation, check_written
+from pondhop.units import Units, gap_text, length_text
 
 __all__ = ["README", "earlier_missions", "judged", "mission_texts", "obstacles", "write_missions"]
 
@@ -45,7 +46,7 @@ _SUFFIXES = (
 _MISSION_FILE = re.compile(rf"drone-[1-9][0-9]*({'|'.join(map(re.escape, _SUFFIXES))})")
 
 
-def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[Path]:
+def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan, *, units: Units = "metric") -> list[Path]:
     """Write the missions of a plan, a parameter file a drone and ground station, and a ``README.txt`` for the crew.
 
     Every mission is checked first (see `pondhop.missions.check.broken_rules`), and every text is read back and must
@@ -58,6 +59,8 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
         Where to; made if it is missing.
     farm_plan
         The plan. Ponds it leaves unserved are in no mission.
+    units
+        Of what people read; the numbers of missions and parameters are those of the autopilot.
 
     Returns
     -------
@@ -72,15 +75,16 @@ def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan) -> list[
     OSError
         If a file cannot be written.
     """
+    check_written(folder, farm_plan, "folder", units)
     folder = Path(folder)
     earlier = earlier_missions(folder)
     try:
-        texts = mission_texts(farm_plan)
+        texts = mission_texts(farm_plan, units)
     except InvalidInput:
         if earlier:
-            replace_files(folder, {}, earlier)
+            replace_files(folder, {}, earlier, (README,))
         raise
-    replace_files(folder, texts, earlier)
+    replace_files(folder, texts, earlier, (README,))
     return [folder / name for name in texts]
 
 
@@ -102,7 +106,7 @@ def earlier_missions(folder: Path) -> list[str]:
     return earlier_files(folder, ours, README, BEGINNING)
 
 
-def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
+def mission_texts(farm_plan: FarmPlan, units: Units = "metric") -> dict[str, str]:
     """Return what `write_missions` writes: name of the file -> text.
 
     Raises
@@ -113,7 +117,7 @@ def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
     missions = _missions(farm_plan)
     faults = [
         Fault(_place(violation), violation.message, violation.remedy)
-        for violation in _judged(farm_plan, missions).told_violations
+        for violation in _judged(farm_plan, missions, units).violations_told_in(units)
         if violation.kind != "unserved"
     ]
     if not missions:
@@ -125,12 +129,12 @@ def mission_texts(farm_plan: FarmPlan) -> dict[str, str]:
         for mission_format in FORMATS:
             texts[f"{mission.name}{mission_format.suffix}"] = mission_format.checked_text(mission)
         for generation in ARDUPILOT.generations:
-            parameters = [generation.spelled(parameter) for parameter in ARDUPILOT.parameters(farm_plan, drone)]
+            parameters = [generation.spelled(parameter) for parameter in ARDUPILOT.parameters(farm_plan, drone, units)]
             title = f"{mission.name}: what {ARDUPILOT.name} {generation.versions} must be set to"
             stem = f"{mission.name}{generation.tag}"
             texts[f"{stem}{MISSION_PLANNER_SUFFIX}"] = mission_planner_parameters(title, parameters)
             texts[f"{stem}{QGROUNDCONTROL_SUFFIX}"] = qgroundcontrol_parameters(title, parameters)
-    texts[README] = crew_readme(farm_plan, ARDUPILOT)
+    texts[README] = crew_readme(farm_plan, ARDUPILOT, units)
     return texts
 
 
@@ -142,22 +146,31 @@ def obstacles(farm_plan: FarmPlan) -> tuple[FarmViolation, ...]:
     farm_plan
         Its own ``obstacles`` are passed over.
     """
-    return _obstacles(farm_plan, _missions(farm_plan))
+    _check(farm_plan)
+    return _obstacles(farm_plan, _missions(farm_plan), "metric")
 
 
-def judged(farm_plan: FarmPlan) -> FarmPlan:
-    """Return a plan with all that keeps it from being flown, also what its file does not tell."""
-    return _judged(farm_plan, _missions(farm_plan))
+def judged(farm_plan: FarmPlan, units: Units = "metric") -> FarmPlan:
+    """Return a plan with all that keeps it from being flown, told in some units, also what its file does not tell."""
+    _check(farm_plan)
+    return _judged(farm_plan, _missions(farm_plan), units)
 
 
-def _judged(farm_plan: FarmPlan, missions: Sequence[Mission]) -> FarmPlan:
-    known = {(violation.kind, violation.drone) for violation in farm_plan.obstacles}
-    obstacles = _obstacles(farm_plan, missions)
-    found = [violation for violation in obstacles if (violation.kind, violation.drone) not in known]
-    return replace(farm_plan, obstacles=(*farm_plan.obstacles, *found))
+def _check(farm_plan: object) -> None:
+    arguments = Arguments()
+    arguments.kind("farm_plan", farm_plan, FarmPlan, PLAN_WANTED)
+    arguments.check()
 
 
-def _obstacles(farm_plan: FarmPlan, missions: Sequence[Mission]) -> tuple[FarmViolation, ...]:
+def _judged(farm_plan: FarmPlan, missions: Sequence[Mission], units: Units) -> FarmPlan:
+    found = _obstacles(farm_plan, missions, units)
+    # What is found again is told in the units asked for; the rest only the planning knew, as ponds out of reach.
+    again = {(violation.kind, violation.drone) for violation in found}
+    known = [violation for violation in farm_plan.obstacles if (violation.kind, violation.drone) not in again]
+    return replace(farm_plan, obstacles=(*known, *found))
+
+
+def _obstacles(farm_plan: FarmPlan, missions: Sequence[Mission], units: Units) -> tuple[FarmViolation, ...]:
     broken = [
         FarmViolation(
             rule.kind,
@@ -169,9 +182,9 @@ def _obstacles(farm_plan: FarmPlan, missions: Sequence[Mission]) -> tuple[FarmVi
             rule.limit,
         )
         for drone, mission in enumerate(missions, start=1)
-        for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m)
+        for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m, units=units)
     ]
-    return (*_doubts(farm_plan.farm), *_near_drones(farm_plan), *_too_far(farm_plan), *broken)
+    return (*_doubts(farm_plan.farm), *_near_drones(farm_plan, units), *_too_far(farm_plan, units), *broken)
 
 
 def _doubts(farm: Farm) -> list[FarmViolation]:
@@ -182,7 +195,7 @@ def _doubts(farm: Farm) -> list[FarmViolation]:
     return [FarmViolation("unconfirmed", fault.message, fault.action)]
 
 
-def _near_drones(farm_plan: FarmPlan) -> list[FarmViolation]:
+def _near_drones(farm_plan: FarmPlan, units: Units) -> list[FarmViolation]:
     """Drones that would pass each other nearer than their layers promise."""
     near = farm_plan.near_drones
     if near is None:
@@ -190,21 +203,22 @@ def _near_drones(farm_plan: FarmPlan) -> list[FarmViolation]:
     out, home, apart_m = near
     spacing_m = farm_plan.layers.spacing_m
     message = (
-        f"drone {out + 1} flies out while drone {home + 1} comes home {apart_m:.1f} m above or below it, "
-        f"nearer than {spacing_m:g} m"
+        f"drone {out + 1} flies out while drone {home + 1} comes home {gap_text(apart_m, units)} above or below it, "
+        f"nearer than {gap_text(spacing_m, units)}"
     )
     remedy = "plan again, with a shorter takeoff_interval_s or fewer drones"
     return [FarmViolation("layers", message, remedy, None, None, apart_m, spacing_m)]
 
 
-def _too_far(farm_plan: FarmPlan) -> list[FarmViolation]:
+def _too_far(farm_plan: FarmPlan, units: Units) -> list[FarmViolation]:
     """Drones that would leave the largest circle around home that the autopilot can keep them in."""
     most_m = MAX_FENCE_RADIUS_M - RADIUS_MARGIN_M
     reaches_m = [reach_of(farm_plan, drone) for drone in range(len(farm_plan.solution.plan.routes))]
     return [
         FarmViolation(
             "too_far",
-            f"it gets {length_text(reach_m)} from the depot, the fence of {ARDUPILOT.name} holds {length_text(most_m)}",
+            f"it gets {length_text(reach_m, units)} from the depot, "
+            f"the fence of {ARDUPILOT.name} holds {length_text(most_m, units)}",
             "move the depot nearer, or leave the ponds beyond it out",
             drone,
             None,
@@ -218,7 +232,7 @@ def _too_far(farm_plan: FarmPlan) -> list[FarmViolation]:
 
 def _missions(farm_plan: FarmPlan) -> list[Mission]:
     return [
-        build_mission(drone, farm_plan.farm, farm_plan.fleet, route)
+        build_mission(drone, farm_plan.farm, farm_plan.fleet, route, farm_plan.layers)
         for drone, route in enumerate(farm_plan.solution.plan.routes)
     ]
 

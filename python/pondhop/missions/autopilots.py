@@ -15,6 +15,7 @@ import numpy as np
 from pondhop._core import LocalFrame
 from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan
+from pondhop.units import Units, gap_text
 
 Kind = Literal["int8", "int16", "int32", "real"]
 """How an autopilot stores a parameter; QGroundControl may pass over one that a file gives another kind."""
@@ -26,10 +27,12 @@ RADIUS_MARGIN_M = 50.0
 """The same for the radius of a fence around home."""
 
 MAX_FENCE_RADIUS_M = 10_000.0
-"""The largest circle around home that ArduPilot keeps a drone in."""
+"""The largest circle around home that ArduPilot keeps a drone in: FENCE_RADIUS is 30 to 10000 m, as the @Range of
+libraries/AC_Fence/AC_Fence.cpp says; FENCE_ALT_MAX is 10 to 1000 m there."""
 
 MAX_DISARM_DELAY_S = 127
-"""The longest that ArduPilot waits on the ground before it disarms; 0 is for ever."""
+"""The longest that ArduPilot waits on the ground before it disarms; 0 is for ever (DISARM_DELAY in
+ArduCopter/Parameters.cpp, @Range 0 to 127)."""
 
 LANDING_WIND_LIMIT_M_S = 5.0
 """Above this wind the landings of a simulated 3 kg quadcopter never ended."""
@@ -94,7 +97,8 @@ class Autopilot:
     max_hold_s
         The longest hold at a waypoint, in whole seconds.
     parameters
-        What a drone of a plan, from 0, must be set to, in the words of the first generation.
+        What a drone of a plan, from 0, must be set to, in the words of the first generation; the reasons in some
+        units.
     generations
         One set of parameter files each. No file mixes them: QGroundControl takes the new names for the old ones on a
         drone of the first generation, and would set it to 15 cm in place of 15 m.
@@ -103,7 +107,7 @@ class Autopilot:
     name: str
     max_num_items: int
     max_hold_s: int
-    parameters: Callable[[FarmPlan, int], list[Parameter]]
+    parameters: Callable[[FarmPlan, int, Units], list[Parameter]]
     generations: tuple[Generation, ...]
 
 
@@ -119,12 +123,12 @@ A drone that a crew lets land with more care keeps its speed where the fleet fil
 """
 
 
-def _ardupilot_parameters(farm_plan: FarmPlan, drone: int) -> list[Parameter]:
+def _ardupilot_parameters(farm_plan: FarmPlan, drone: int, units: Units) -> list[Parameter]:
     fleet, farm = farm_plan.fleet, farm_plan.farm
     layers = farm_plan.layers
     return_height_m = layers.way_home_height_m(drone)
     speed_why = "a pause in flight forgets the speed of the mission and takes this one"
-    home_why = f"drones come home in layers, {layers.spacing_m:g} m above each other"
+    home_why = f"drones come home in layers, {gap_text(layers.spacing_m, units)} above each other"
     found = [
         Parameter("WPNAV_SPEED", round(100 * fleet.speed_m_s), speed_why, "real"),
         Parameter("RTL_ALT", round(100 * return_height_m), home_why, "int32"),

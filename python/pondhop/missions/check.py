@@ -15,6 +15,7 @@ from pondhop.fleet import MAX_HEIGHT_M
 from pondhop.missions.autopilots import Autopilot
 from pondhop.missions.mission import POSITIONED, Action, Mission
 from pondhop.places import LonLat
+from pondhop.units import Units, gap_text, height_text, speed_text
 
 MAX_LEGS_TOLD = 5
 """Legs that are named where many break the same rule."""
@@ -42,7 +43,9 @@ class BrokenRule:
     limit: float | None = None
 
 
-def broken_rules(mission: Mission, autopilot: Autopilot, *, margin_m: float = 0.0) -> list[BrokenRule]:
+def broken_rules(
+    mission: Mission, autopilot: Autopilot, *, margin_m: float = 0.0, units: Units = "metric"
+) -> list[BrokenRule]:
     """Return every rule the mission breaks, each with the item and the remedy; empty for one that may be flown.
 
     The rules: all numbers finite and in range, the order of take-offs and landings sound, heights at most
@@ -57,14 +60,16 @@ def broken_rules(mission: Mission, autopilot: Autopilot, *, margin_m: float = 0.
         What it is for.
     margin_m
         How far legs must stay inside of fences and outside of no-fly zones.
+    units
+        Of heights, lengths and speeds in the faults.
     """
-    faults = [*_value_faults(mission, autopilot), *_order_faults(mission)]
+    faults = [*_value_faults(mission, autopilot, units), *_order_faults(mission)]
     positions = list(_position_faults(mission))
     rules = [BrokenRule("mission", fault) for fault in positions + faults]
     rules += _size_rules(mission, autopilot)
     # Geometry with a latitude of 137 or NaN has no meaning.
     if not positions:
-        rules += _area_rules(mission, margin_m)
+        rules += _area_rules(mission, margin_m, units)
     return rules
 
 
@@ -81,23 +86,36 @@ def _position_faults(mission: Mission) -> Iterator[Fault]:
             yield Fault(place, f"the latitude is {latitude}", "give one of -90 to 90 degrees; are lon and lat swapped?")
 
 
-def _value_faults(mission: Mission, autopilot: Autopilot) -> Iterator[Fault]:
+def _value_faults(mission: Mission, autopilot: Autopilot, units: Units) -> Iterator[Fault]:
     for index, item in enumerate(mission.items):
         place = _place(mission, index)
         if item.action in POSITIONED and (item.position is None or item.height_m is None):
             yield Fault(place, "it has no position or height", "say where")
         if item.height_m is not None:
             if not 0 <= item.height_m <= MAX_HEIGHT_M:
-                yield Fault(place, f"the height is {item.height_m} m", f"fly at 0 to {MAX_HEIGHT_M} m above ground")
+                highest = _exact_height(MAX_HEIGHT_M, units)
+                message = f"the height is {_exact_height(item.height_m, units)}"
+                yield Fault(place, message, f"fly at 0 to {highest} above ground")
             elif item.height_m == 0 and item.action is not Action.LAND:
-                yield Fault(place, "the height is 0 m", "fly above the ground: set the fleet's heights")
+                yield Fault(
+                    place, f"the height is {height_text(0.0, units)}", "fly above the ground: set the fleet's heights"
+                )
         if not (0 <= item.hold_s <= autopilot.max_hold_s and item.hold_s == math.floor(item.hold_s)):
             action = f"hold for whole seconds of at most {autopilot.max_hold_s}"
             yield Fault(place, f"the hold is {item.hold_s} s", action)
         elif item.hold_s == 0 and item.action is Action.DELAY:
             yield Fault(place, "the delay is 0 s, which some autopilots take for a time of day", "wait 1 s or more")
         if item.speed_m_s is not None and not 0 < item.speed_m_s < math.inf:
-            yield Fault(place, f"the speed is {item.speed_m_s} m/s", "give a positive speed")
+            yield Fault(place, f"the speed is {_exact_speed(item.speed_m_s, units)}", "give a positive speed")
+
+
+def _exact_height(height_m: float, units: Units) -> str:
+    """A height as it is, where a rounded one might seem to keep the rule."""
+    return f"{height_m} m" if units == "metric" else gap_text(height_m, units)
+
+
+def _exact_speed(speed_m_s: float, units: Units) -> str:
+    return f"{speed_m_s} m/s" if units == "metric" else speed_text(speed_m_s, units)
 
 
 def _order_faults(mission: Mission) -> Iterator[Fault]:
@@ -143,7 +161,7 @@ def _num_ponds(mission: Mission) -> int:
     return max(1, len({item.pond_id for item in mission.items if item.pond_id is not None}))
 
 
-def _area_rules(mission: Mission, margin_m: float) -> Iterator[BrokenRule]:
+def _area_rules(mission: Mission, margin_m: float, units: Units) -> Iterator[BrokenRule]:
     """Legs and home that are outside a fence, or inside a no-fly zone, by the margin; one broken rule an area."""
     if not mission.fences and not mission.no_fly:
         return
@@ -172,7 +190,7 @@ def _area_rules(mission: Mission, margin_m: float) -> Iterator[BrokenRule]:
         if broken or is_home_broken:
             told = ", ".join(broken[:MAX_LEGS_TOLD]) + (", ..." if len(broken) > MAX_LEGS_TOLD else "")
             side = "inside" if kind == "outside_fence" else "outside"
-            room = f"by at least {margin_m:g} m " if margin_m > 0 else ""
+            room = f"by at least {gap_text(margin_m, units)} " if margin_m > 0 else ""
             legs = f"{len(broken)} of {len(names)} legs"
             what = f"home and {legs}" if is_home_broken else legs
             message = f"{what} are not {side} it {room}({told})" if broken else f"home is not {side} it {room}".rstrip()

@@ -11,6 +11,7 @@ from enum import Enum
 
 from pondhop.farm.model import Farm, Pond
 from pondhop.fleet import Fleet
+from pondhop.fleet.layers import Layers
 from pondhop.places import LonLat, Ring
 
 _NUM_DECIMALS = 8
@@ -86,7 +87,7 @@ class Mission:
     no_fly: tuple[Ring, ...] = ()
 
 
-def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int]) -> Mission:
+def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int], layers: Layers | None = None) -> Mission:
     """Return the mission that flies a route: take off, sample every pond in order, return to launch.
 
     The cruise speed is an item of its own: without it ArduPilot flies at the speed of its parameters, whatever was
@@ -102,9 +103,13 @@ def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int]) ->
         What the route was planned for.
     route
         Indices of ``farm.ponds`` in flying order.
+    layers
+        At which heights drones fly out; those of the fleet, where all may lie between each other, if not given.
     """
+    if layers is None:
+        layers = fleet.layers(len(farm.ponds))
     height_m = _rounded(fleet.transit_height_m)
-    way_out_m = _rounded(fleet.layers(len(farm.ponds)).way_out_height_m(drone))
+    way_out_m = _rounded(layers.way_out_height_m(drone))
     speed_m_s = _rounded(fleet.speed_m_s)
     home = _rounded_position(farm.depot)
     items = [

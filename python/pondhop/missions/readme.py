@@ -9,29 +9,42 @@ from textwrap import fill
 from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation, Parameter
 from pondhop.missions.formats import FORMATS
 from pondhop.solution import FarmPlan
-from pondhop.units import clock_text, counted, duration_text, energy_text, height_text, length_text, speed_text
+from pondhop.units import (
+    Units,
+    clock_text,
+    counted,
+    duration_text,
+    energy_text,
+    gap_text,
+    height_text,
+    length_text,
+    speed_text,
+)
 
 _WIDTH = 88
 
 _TITLE = "Pondhop missions for"
 
-BEGINNING = re.compile(rf"{_TITLE}\b".encode())
-"""How every such text begins, and hardly one of the user's own."""
+_EARLIER_TITLE = r"Missions for (?:(?!\n\s*\n).)+?,\s+(?:hover-dip|splashdown)(?:,\s+for\s+ArduPilot\s+Copter)?\r?\n"
+
+BEGINNING = re.compile(rf"{_TITLE}\b|{_EARLIER_TITLE}".encode(), re.DOTALL)
+"""How every such text begins, and hardly one of the user's own. Version 0.1 began with "Missions for", as people might:
+its whole title tells."""
 
 STANDS_APART_M = 5.0
 """Between two drones at the depot: positions are known to 1 or 2 m."""
 
 
-def crew_readme(farm_plan: FarmPlan, autopilot: Autopilot) -> str:
-    """Return the text."""
+def crew_readme(farm_plan: FarmPlan, autopilot: Autopilot, units: Units = "metric") -> str:
+    """Return the text, with lengths, heights and speeds in some units; parameters have those of the autopilot."""
     sections = [
         [f"{_TITLE} {farm_plan.farm.name}, {farm_plan.fleet.sampling}, for {autopilot.name} Copter"],
-        ["DRONES", *_drones(farm_plan)],
+        ["DRONES", *_drones(farm_plan, units)],
         ["BATTERY", f"{farm_plan.battery_text} Start every drone with a full battery."],
-        ["SET EVERY DRONE", *_settings(farm_plan, autopilot)],
-        ["START", *_start(farm_plan)],
-        ["WIND", *_wind(farm_plan)],
-        ["KNOW", *_knowledge(farm_plan)],
+        ["SET EVERY DRONE", *_settings(farm_plan, autopilot, units)],
+        ["START", *_start(farm_plan, units)],
+        ["WIND", *_wind(farm_plan, units)],
+        ["KNOW", *_knowledge(farm_plan, units)],
     ]
     return "\n\n".join("\n".join(map(_wrapped, section)) for section in sections) + "\n"
 
@@ -41,14 +54,15 @@ def _wrapped(paragraph: str) -> str:
     return fill(paragraph, _WIDTH, subsequent_indent=f"{indent}  ", break_long_words=False, break_on_hyphens=False)
 
 
-def _drones(farm_plan: FarmPlan) -> list[str]:
+def _drones(farm_plan: FarmPlan, units: Units) -> list[str]:
     layers, plan = farm_plan.layers, farm_plan.solution.plan
     rows = []
     for drone, route in enumerate(plan.routes):
         start_s, back_s = farm_plan.takeoff_times_s[drone], farm_plan.back_times_s[drone]
         duration_s, phases = float(plan.route_durations_s[drone]), farm_plan.energy_phases(drone)
-        length, energy = length_text(float(plan.route_lengths[drone])), energy_text(phases.total_j)
-        way_out, way_home = height_text(layers.way_out_height_m(drone)), height_text(layers.way_home_height_m(drone))
+        length, energy = length_text(float(plan.route_lengths[drone]), units), energy_text(phases.total_j)
+        way_out = height_text(layers.way_out_height_m(drone), units)
+        way_home = height_text(layers.way_home_height_m(drone), units)
         rows += [
             f"drone-{drone + 1}: {counted(len(route), 'pond')}, {length}, {duration_text(duration_s)}, {energy}",
             f"  takes off at {clock_text(start_s)}, flies out {way_out} high, comes home {way_home} high, "
@@ -59,8 +73,8 @@ def _drones(farm_plan: FarmPlan) -> list[str]:
     return [*rows, f"All are back {duration_text(farm_plan.all_back_s)} after the first take-off, in calm air."]
 
 
-def _settings(farm_plan: FarmPlan, autopilot: Autopilot) -> list[str]:
-    parameters = autopilot.parameters(farm_plan, 0)
+def _settings(farm_plan: FarmPlan, autopilot: Autopilot, units: Units) -> list[str]:
+    parameters = autopilot.parameters(farm_plan, 0, units)
     return [
         "Each drone has parameters of its own: load drone-N.param with Mission Planner, or drone-N.params with "
         "QGroundControl, into drone N and no other.",
@@ -87,11 +101,11 @@ def _renamed(generation: Generation, parameters: list[Parameter]) -> str:
     return ", ".join(f"{old} is {new} x {1 / factor:g}" for old, new, _, factor in found)
 
 
-def _start(farm_plan: FarmPlan) -> list[str]:
+def _start(farm_plan: FarmPlan, units: Units) -> list[str]:
     files = ", ".join(f"drone-N{mission_format.suffix} with {mission_format.name}" for mission_format in FORMATS)
     return [
         f"Load {files}: the same mission, but only .plan holds the fence and the no-fly zones.",
-        f"Stand the drones at least {STANDS_APART_M:g} m apart: each comes home to where it was armed.",
+        f"Stand the drones at least {height_text(STANDS_APART_M, units)} apart: each comes home to where it was armed.",
         f"Start drone 1, then each drone {farm_plan.fleet.takeoff_interval_s:g} s after the one before it, in the "
         "order of their numbers.",
         "QGroundControl: slide Start Mission. Mission Planner: Actions, Mission Start. From a transmitter: arm, switch "
@@ -100,8 +114,8 @@ def _start(farm_plan: FarmPlan) -> list[str]:
     ]
 
 
-def _wind(farm_plan: FarmPlan) -> list[str]:
-    limit = f"{LANDING_WIND_LIMIT_M_S:g} m/s"
+def _wind(farm_plan: FarmPlan, units: Units) -> list[str]:
+    limit = speed_text(LANDING_WIND_LIMIT_M_S, units)
     rows = [
         f"Do not fly above {limit} of wind. Measured on a simulated 3 kg quadcopter: a landing at home then never "
         "ends; the drone stands with its motors turning until somebody disarms it."
@@ -114,16 +128,17 @@ def _wind(farm_plan: FarmPlan) -> list[str]:
     return rows
 
 
-def _knowledge(farm_plan: FarmPlan) -> list[str]:
+def _knowledge(farm_plan: FarmPlan, units: Units) -> list[str]:
     fleet = farm_plan.fleet
+    speed, return_speed = speed_text(fleet.speed_m_s, units), speed_text(fleet.return_speed_m_s, units)
     return [
-        f"Planned: {speed_text(fleet.speed_m_s)}, {height_text(fleet.transit_height_m)} above the depot between ponds, "
+        f"Planned: {speed}, {height_text(fleet.transit_height_m, units)} above the depot between ponds, "
         f"{fleet.service_s:.0f} s at a pond, of these {fleet.dwell_s:g} s of sampling.",
         *_own_times(farm_plan),
         "Heights are above the depot; the ground is taken to be flat.",
-        *_layers(farm_plan),
-        f"The way home (RTL) is flown at {speed_text(fleet.return_speed_m_s)}, at the height of each drone above.",
-        *farm_plan.notes,
+        *_layers(farm_plan, units),
+        f"The way home (RTL) is flown at {return_speed}, at the height of each drone above.",
+        *farm_plan.notes_told_in(units),
     ]
 
 
@@ -140,11 +155,11 @@ def _own_times(farm_plan: FarmPlan) -> list[str]:
     ]
 
 
-def _layers(farm_plan: FarmPlan) -> list[str]:
+def _layers(farm_plan: FarmPlan, units: Units) -> list[str]:
     """What keeps drones apart in height, where more than one flies."""
     if len(farm_plan.solution.plan.routes) < 2:
         return []
-    spacing = height_text(farm_plan.layers.spacing_m)
+    spacing = gap_text(farm_plan.layers.spacing_m, units)
     crossing = (
         "all ways home lie above all ways out."
         if farm_plan.are_layers_stacked

@@ -6,7 +6,7 @@ Every function draws on the axes it is given or on a figure of its own, returns 
 
 from pondhop.plot.canvas import draw_areas, figure_bytes, prepared_axes, save_figure
 from pondhop.plot.look import LOOKS, Look, Theme
-from pondhop.plot.plans import plot_clusters, plot_plan, plot_solution
+from pondhop.plot.plans import drawn_plan, plot_clusters, plot_plan, plot_solution
 from pondhop.plot.routes import draw_depot
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Theme",
     "draw_areas",
     "draw_depot",
+    "drawn_plan",
     "figure_bytes",
     "plot_clusters",
     "plot_plan",

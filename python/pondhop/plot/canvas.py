@@ -5,13 +5,14 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pondhop.arguments import Arguments, checked_path
 from pondhop.documents.atomic import write_all
+from pondhop.errors import Fault, InvalidInput
 from pondhop.plot.fonts import lettering
 from pondhop.plot.look import Look
 from pondhop.units import METRES_PER_FOOT, METRES_PER_MILE, Units
@@ -38,12 +39,12 @@ def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
 
     Raises
     ------
-    ValueError
-        If matplotlib knows no such format, or the axes belong to no figure.
+    InvalidInput
+        If `ax` is something else or belongs to no figure, or matplotlib knows no such format.
     OSError
         If the file cannot be written.
     """
-    path = Path(path)
+    path = checked_path("path", path)
     write_all({path: figure_bytes(ax, path.suffix.lower().removeprefix("."))})
 
 
@@ -59,14 +60,22 @@ def figure_bytes(ax: Axes, kind: str) -> bytes:
 
     Raises
     ------
-    ValueError
-        If matplotlib knows no such format, or the axes belong to no figure.
+    InvalidInput
+        If `ax` is something else or belongs to no figure, or matplotlib knows no such format.
     """
     import matplotlib as mpl
+    from matplotlib.axes import Axes
 
-    figure = ax.get_figure(root=True)
-    if figure is None:
-        raise ValueError("the axes belong to no figure")
+    arguments = Arguments()
+    figure = None
+    if arguments.kind("ax", ax, Axes, "give axes as a function of pondhop.plot returned them"):
+        figure = ax.get_figure(root=True)
+        if figure is None:
+            arguments.faults.append(Fault("ax", "the axes belong to no figure", "give axes of a figure"))
+        else:
+            arguments.one_of("kind", kind, tuple(figure.canvas.get_supported_filetypes()))
+    if figure is None or arguments.faults:
+        raise InvalidInput(arguments.faults)
     metadata = {"Date": None} if kind == "svg" else None
     content = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "pondhop"}):
@@ -168,8 +177,8 @@ def draw_scale_bar(ax: Axes, look: Look, units: Units) -> None:
     )
 
 
-def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look) -> None:
-    """Write a name and below it lines of facts; letters that no font of the machine has are replaced."""
+def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look) -> frozenset[str]:
+    """Write a name and below it lines of facts; return the letters of the name that no font has, and are replaced."""
     letters = lettering([name])
     ax.set_title(
         letters.written(name),
@@ -192,3 +201,4 @@ def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look)
         fontsize=9.5,
         color=look.faint_ink,
     )
+    return letters.missing

@@ -24,7 +24,7 @@ _OFFSET = 5.0
 """How far below a pond's marker its name stands, in points."""
 
 
-def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) -> None:
+def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) -> frozenset[str]:
     """Write the name of each pond below its sampling point, in order, where neither another name nor a marker is near.
 
     Parameters
@@ -37,6 +37,11 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
         One a position.
     look
         Colours.
+
+    Returns
+    -------
+    frozenset of str
+        Letters of the names that no font of the machine has.
     """
     letters = lettering(names)
     texts = [letters.written(name).strip() for name in names]
@@ -64,6 +69,7 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
             color=look.ink,
             zorder=5,
         )
+    return letters.missing
 
 
 def _in_points(ax: Axes, positions: Points) -> Points:

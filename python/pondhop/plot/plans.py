@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
 from pondhop._core import LocalFrame, Problem, evaluate
+from pondhop.arguments import Arguments
 from pondhop.palette import ROUTE_COLOURS, route_colour
 from pondhop.plot.canvas import (
     Points,
@@ -21,7 +22,7 @@ from pondhop.plot.canvas import (
 from pondhop.plot.look import LOOKS, Look, Theme
 from pondhop.plot.names import draw_names
 from pondhop.plot.routes import LINE_STYLES, MARKERS, draw_depot, draw_routes, draw_shading_key, marker_size
-from pondhop.solution import FarmPlan
+from pondhop.solution import PLAN_WANTED, FarmPlan
 from pondhop.units import Units, clock_text, counted, duration_text, energy_text, length_text
 
 if TYPE_CHECKING:
@@ -51,7 +52,22 @@ def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "li
     -------
     Axes
         In metres east and north of the depot.
+
+    Raises
+    ------
+    InvalidInput
+        With every argument that is something else.
     """
+    return drawn_plan(farm_plan, ax, theme=theme, units=units)[0]
+
+
+def drawn_plan(
+    farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "light", units: Units = "metric"
+) -> tuple[Axes, frozenset[str]]:
+    """Draw as `plot_plan`; return the axes, and the letters of names that no font of the machine has."""
+    arguments = Arguments()
+    arguments.kind("farm_plan", farm_plan, FarmPlan, PLAN_WANTED)
+    _check_look(arguments, ax, theme, units)
     farm, solution = farm_plan.farm, farm_plan.solution
     plan = solution.plan
     frame = LocalFrame(*farm.depot)
@@ -75,10 +91,9 @@ def plot_plan(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "li
     )
     draw_shading_key(ax, look)
     draw_scale_bar(ax, look, units)
-    draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look)
+    unwritten = draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look)
     write_legend(ax, look)
-    write_title(ax, farm.name, _facts(farm_plan, units), look)
-    return ax
+    return ax, unwritten | write_title(ax, farm.name, _facts(farm_plan, units), look)
 
 
 def _drone_label(farm_plan: FarmPlan, drone: int, units: Units) -> str:
@@ -146,11 +161,14 @@ def plot_solution(
     Raises
     ------
     InvalidInput
-        If a route names a pond that does not exist.
+        With every argument that is something else; if a route names a pond that does not exist.
     """
+    arguments = Arguments()
+    outline = _checked_boundary(arguments, boundary)
+    _check_look(arguments, ax, theme)
     plan = evaluate(problem, routes)
     look = LOOKS[theme]
-    ax = _research_axes(problem, boundary, (), ax, look)
+    ax = _research_axes(problem, outline, (), ax, look)
     labels = [
         f"{length:.3f}, {counted(len(route), 'pond')}"
         for route, length in zip(plan.routes, plan.route_lengths, strict=True)
@@ -191,9 +209,20 @@ def plot_clusters(
     -------
     Axes
         In the units of the farm.
+
+    Raises
+    ------
+    InvalidInput
+        With every argument that is something else.
     """
+    arguments = Arguments()
+    arguments.kind("problem", problem, Problem, "give a pondhop.Problem")
+    outline = _checked_boundary(arguments, boundary)
+    if not arguments.faults:
+        _check_clusters(arguments, problem, clusters)
+    _check_look(arguments, ax, theme)
     look = LOOKS[theme]
-    ax = _research_axes(problem, boundary, [path for _, _, path in clusters], ax, look)
+    ax = _research_axes(problem, outline, [path for _, _, path in clusters], ax, look)
     for index, (ponds, hull, path) in enumerate(clusters):
         colour, cycle = route_colour(index), index // len(ROUTE_COLOURS)
         corners = problem.ponds[hull]
@@ -215,11 +244,39 @@ def plot_clusters(
     return ax
 
 
+def _check_look(arguments: Arguments, ax: object, theme: object, units: object = "metric") -> None:
+    """Raise what is wrong with the arguments so far, and with those that all pictures share."""
+    if ax is not None:
+        from matplotlib.axes import Axes
+
+        arguments.kind("ax", ax, Axes, "give axes of matplotlib, or leave them out")
+    arguments.one_of("theme", theme, get_args(Theme))
+    arguments.one_of("units", units, get_args(Units))
+    arguments.check()
+
+
+def _checked_boundary(arguments: Arguments, boundary: object) -> list[Points]:
+    """Return the outline of a research farm, or none."""
+    is_none = boundary is None or not arguments.positions("boundary", boundary)
+    return [] if is_none else [np.asarray(boundary, dtype=np.float64)]
+
+
+def _check_clusters(arguments: Arguments, problem: Problem, clusters: object) -> None:
+    action = "give ponds, hull and path of each cluster, as pondhop._core.hpp_clusters returns them"
+    kind: type[tuple[object, ...]] = tuple
+    for index, cluster in enumerate(arguments.all_kind("clusters", clusters, kind, action)):
+        if len(cluster) != 3:
+            arguments.refuse(f"clusters[{index}]", cluster, action)
+            continue
+        for name, ponds in (("ponds", cluster[0]), ("hull", cluster[1])):
+            arguments.indices(f"clusters[{index}], {name}", ponds, problem.num_ponds)
+        arguments.positions(f"clusters[{index}], path", cluster[2])
+
+
 def _research_axes(
-    problem: Problem, boundary: Points | None, paths: Sequence[Points], ax: Axes | None, look: Look
+    problem: Problem, outline: Sequence[Points], paths: Sequence[Points], ax: Axes | None, look: Look
 ) -> Axes:
     """Return axes with room for a research farm and paths over it; its outline is drawn."""
-    outline = [] if boundary is None else [np.asarray(boundary, dtype=np.float64)]
     ax = prepared_axes(ax, np.vstack([problem.depot[None], problem.ponds, *paths, *outline]), look)
     draw_areas(ax, outline, facecolor="none", edgecolor=look.outline, linewidth=1.2, zorder=1)
     return ax

@@ -1,0 +1,137 @@
+"""What public functions are given: whatever is not what they take becomes a fault that names the argument.
+
+A wrong value of Python would else come to light far below, in words about something that the caller never wrote.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from numbers import Integral, Real
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from pondhop.errors import Fault, InvalidInput
+
+Kind = TypeVar("Kind")
+
+_MAX_SHOWN = 40
+"""Letters of a value that a message shows."""
+
+_MOST_DIGITS = 2**128
+"""Python refuses to print numbers of more than some thousand digits."""
+
+
+class Arguments:
+    """Looks at the arguments of a function, and collects what is wrong with them in `faults`."""
+
+    def __init__(self) -> None:
+        self.faults: list[Fault] = []
+
+    def check(self) -> None:
+        """Raise `InvalidInput` with all faults, if there are any."""
+        if self.faults:
+            raise InvalidInput(self.faults)
+
+    def kind(self, name: str, value: object, kind: type, action: str) -> bool:
+        """Whether a value is of some class."""
+        return isinstance(value, kind) or self.refuse(name, value, action)
+
+    def whole(self, name: str, value: object, least: int, most: int, action: str) -> bool:
+        """Whether a value is a whole number in some range."""
+        if not isinstance(value, Integral) or isinstance(value, bool):
+            return self.refuse(name, value, action)
+        return least <= int(value) <= most or self.refuse(name, value, action)
+
+    def real(self, name: str, value: object, least: float, most: float, action: str) -> bool:
+        """Whether a value is a number in some range; no comparison holds for one that is none."""
+        if not isinstance(value, Real) or isinstance(value, bool):
+            return self.refuse(name, value, action)
+        # Whole numbers may be beyond all floats, and compare with them all the same.
+        number = int(value) if isinstance(value, Integral) else float(value)
+        return least <= number <= most or self.refuse(name, value, action)
+
+    def truth(self, name: str, value: object) -> bool:
+        """Whether a value is true or false."""
+        return isinstance(value, (bool, np.bool_)) or self.refuse(name, value, "give True or False")
+
+    def one_of(self, name: str, value: object, possible: Sequence[str]) -> bool:
+        """Whether a value is one of some words."""
+        is_known = isinstance(value, str) and value in possible
+        return is_known or self.refuse(name, value, f"choose one of: {', '.join(possible)}")
+
+    def path(self, name: str, value: object) -> bool:
+        """Whether a value names a file or folder."""
+        action = "give the name of a file or folder, as text or a path"
+        if not isinstance(value, (str, os.PathLike)) or not isinstance(os.fspath(value), str):
+            return self.refuse(name, value, action)
+        return "\0" not in os.fspath(value) or self.refuse(name, value, action)
+
+    def array(self, name: str, value: object, action: str) -> bool:
+        """Whether a value is an array of numbers, of which none is masked."""
+        is_good = isinstance(value, np.ndarray) and value.dtype.kind in "iuf" and not np.ma.is_masked(value)
+        return is_good or self.refuse(name, value, action)
+
+    def positions(self, name: str, value: object) -> bool:
+        """Whether a value is an array of positions, shape (n, 2)."""
+        action = "give finite positions as an array of shape (n, 2)"
+        try:
+            places = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            return self.refuse(name, value, action)
+        is_good = places.ndim == 2 and places.shape[1] == 2 and len(places) > 0 and bool(np.isfinite(places).all())
+        return (is_good and not np.ma.is_masked(value)) or self.refuse(name, value, action)
+
+    def indices(self, name: str, value: object, number: int) -> bool:
+        """Whether a value is a sequence of indices below a number."""
+        action = f"give indices from 0 to {number - 1}"
+        if isinstance(value, (str, bytes)) or not isinstance(value, Sequence | np.ndarray):
+            return self.refuse(name, value, action)
+        are_known = [self.whole(f"{name}[{place}]", index, 0, number - 1, action) for place, index in enumerate(value)]
+        return all(are_known)
+
+    def all_kind(self, name: str, values: object, kind: type[Kind], action: str) -> Sequence[Kind]:
+        """Return a sequence whose items are all of some class; an empty one where the value is something else."""
+        if isinstance(values, (str, bytes)) or not isinstance(values, Sequence):
+            self.refuse(name, values, action)
+            return ()
+        for index, value in enumerate(values):
+            self.kind(f"{name}[{index}]", value, kind, action)
+        return values if all(isinstance(value, kind) for value in values) else ()
+
+    def all_of(self, name: str, values: object, possible: Sequence[str]) -> None:
+        """Look at a value that is to be a sequence of some words."""
+        words = self.all_kind(name, values, str, f"give some of: {', '.join(possible)}")
+        for index, word in enumerate(words):
+            self.one_of(f"{name}[{index}]", word, possible)
+
+    def refuse(self, name: str, value: object, action: str) -> bool:
+        """Add the fault that a value cannot be taken; return that it cannot."""
+        self.faults.append(Fault(name, f"it is {shown(value)}", action))
+        return False
+
+
+def checked_path(name: str, value: object) -> Path:
+    """Return a path that was given as text or as one.
+
+    Raises
+    ------
+    InvalidInput
+        If it is neither.
+    """
+    arguments = Arguments()
+    arguments.path(name, value)
+    arguments.check()
+    return Path(value)  # type: ignore[arg-type]
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it, cut where it is too long to read."""
+    if isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) >= _MOST_DIGITS:
+        return "a number of very many digits"
+    if (isinstance(value, Iterable) and not isinstance(value, (str, bytes, list, tuple))) or callable(value):
+        return f"a {type(value).__name__}"
+    text = repr(value)
+    return text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 3]}..."
