@@ -103,6 +103,13 @@ FUNCTIONS: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "generate": (pondhop.generate, {"num_ponds": 5, "num_farms": 1, "seed": 1, "variant": "paper"}),
     "plan": (pondhop.plan, {"farm": FARM, "fleet": Fleet(2), **PLANNING}),
     "solve": (pondhop.solve, {"problem": PROBLEM, **PLANNING}),
+    "read_farm": (pondhop.read_farm, {"path": "farm.geojson", "depot": None, "layers": (), "accept": ()}),
+    "write_farm": (pondhop.write_farm, {"path": "written.geojson", "farm": FARM}),
+    "generate_farm": (
+        pondhop.generate_farm,
+        {"num_ponds": 5, "at": (-90.0, 33.0), "seed": 1, "missing_share": 0.1, "irregular": False},
+    ),
+    "Farm.to_problem": (FARM.to_problem, {"fleet": Fleet(2), "are_layers_stacked": False}),
     "read_farms": (pondhop.read_farms, {"path": "farms.json"}),
     "read_tsplib": (instances.read_tsplib, {"path": "farms.tsp"}),
     "read_fleet": (pondhop.read_fleet, {"path": "fleet.toml"}),
@@ -169,6 +176,7 @@ def assert_wrong_values_are_told(function: Callable[..., object], good: dict[str
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     write_plan_json("plan.json", FARM_PLAN)
+    pondhop.write_farm("farm.geojson", FARM)
     instances.write_farms("farms.json", RESEARCH_FARMS)
     Path("fleet.toml").write_text("num_drones = 3")
     Path("farms.tsp").write_text(
@@ -214,6 +222,7 @@ def test_no_wrong_value_leads_into_the_depths_of_matplotlib(name: str) -> None:
         (lambda: pondhop.solve(PROBLEM, seed=-1), "seed: it is -1 (give a whole number from 0"),
         (lambda: pondhop.solve(PROBLEM, planner=3), "planner: it is 3 (give the name of a planner"),  # type: ignore[arg-type]
         (lambda: pondhop.solve(PROBLEM, planner=list), "planner: list does not take problem, seed"),  # type: ignore[arg-type]
+        (lambda: pondhop.generate_farm(5, at=(1,)), "at: it is (1,) (give longitude -180..180, then latitude"),  # type: ignore[arg-type]
         (lambda: pondhop.solve(3), "problem: it is 3 (give a pondhop.Problem"),  # type: ignore[arg-type]
         (lambda: pondhop.LocalFrame(math.nan, 0.0), "longitude_deg: it is NaN (give degrees of -360 to 360"),
         (lambda: pondhop.LocalFrame(0.0, "x"), "latitude_deg: it is 'x' (give a real number"),  # type: ignore[arg-type]

@@ -69,6 +69,18 @@ class Arguments:
             return self.refuse(name, value, action)
         return "\0" not in os.fspath(value) or self.refuse(name, value, action)
 
+    def position(self, name: str, value: object, most_latitude_deg: float = 90.0) -> bool:
+        """Whether a value is a longitude and a latitude in degrees."""
+        action = f"give longitude -180..180, then latitude -{most_latitude_deg:g}..{most_latitude_deg:g}, in degrees"
+        try:
+            degrees = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            return self.refuse(name, value, action)
+        if degrees.shape != (2,) or np.ma.is_masked(value):
+            return self.refuse(name, value, action)
+        is_on_globe = abs(degrees[0]) <= 180.0 and abs(degrees[1]) <= most_latitude_deg
+        return bool(is_on_globe) or self.refuse(name, value, action)
+
     def array(self, name: str, value: object, action: str) -> bool:
         """Whether a value is an array of numbers, of which none is masked."""
         is_good = isinstance(value, np.ndarray) and value.dtype.kind in "iuf" and not np.ma.is_masked(value)

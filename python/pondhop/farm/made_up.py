@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pondhop._core import LocalFrame
-from pondhop.errors import Fault, InvalidInput
+from pondhop.arguments import Arguments
 from pondhop.farm.coordinates import MAX_LATITUDE_DEG
 from pondhop.farm.model import Farm, Pond
 from pondhop.farm.shapes import point_inside
@@ -86,7 +86,9 @@ def generate_farm(
     InvalidInput
         With every parameter that is out of range.
     """
-    _check(num_ponds, at, missing_share)
+    _check(num_ponds, at, seed, missing_share, irregular)
+    num_ponds, seed = int(num_ponds), int(seed)
+    at = float(at[0]), float(at[1])
     # Of the standard generator only random() is used: its sequence is promised to stay the same for ever.
     random = Random(seed)
     num_places = 1 + math.ceil(num_ponds / (1.0 - missing_share))
@@ -109,17 +111,15 @@ def generate_farm(
     return Farm(f"Delta farm of {counted(num_ponds, 'pond')} (made up, seed {seed})", tuple(ponds), at)
 
 
-def _check(num_ponds: int, at: LonLat, missing_share: float) -> None:
-    faults = []
-    if not 1 <= num_ponds <= MAX_PONDS:
-        faults.append(Fault("num_ponds", f"{num_ponds} ponds", f"ask for 1 to {MAX_PONDS}"))
-    if not (abs(at[0]) <= 180.0 and abs(at[1]) <= MAX_LATITUDE_DEG):
-        action = f"give longitude -180..180, then latitude -{MAX_LATITUDE_DEG:g}..{MAX_LATITUDE_DEG:g}"
-        faults.append(Fault("at", f"{at[0]:g}, {at[1]:g} is no place of a farm", action))
-    if not 0.0 <= missing_share < 0.9:
-        faults.append(Fault("missing_share", f"{missing_share:g} is no share", "give a number from 0 to below 0.9"))
-    if faults:
-        raise InvalidInput(faults)
+def _check(num_ponds: object, at: object, seed: object, missing_share: object, irregular: object) -> None:
+    arguments = Arguments()
+    arguments.whole("num_ponds", num_ponds, 1, MAX_PONDS, f"ask for 1 to {MAX_PONDS}")
+    arguments.position("at", at, most_latitude_deg=MAX_LATITUDE_DEG)
+    arguments.whole("seed", seed, 0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
+    most = math.nextafter(0.9, 0.0)
+    arguments.real("missing_share", missing_share, 0.0, most, "give a number from 0 to below 0.9")
+    arguments.truth("irregular", irregular)
+    arguments.check()
 
 
 def _field(num_places: int, random: Random) -> list[_Place]:

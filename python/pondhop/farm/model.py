@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pondhop._core import LocalFrame, Problem
+from pondhop.arguments import Arguments
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
 from pondhop.farm.shapes import hole_around
@@ -121,6 +122,10 @@ class Farm:
             With the ponds whose own time on station is less than what sampling takes, or if so many drones do not fit
             above each other.
         """
+        arguments = Arguments()
+        arguments.kind("fleet", fleet, Fleet, "give a pondhop.Fleet, as in pondhop.Fleet(num_drones=3)")
+        arguments.truth("are_layers_stacked", are_layers_stacked)
+        arguments.check()
         _check_service(self.ponds, fleet)
         sampling_points = np.array([pond.sampling_point for pond in self.ponds], dtype=np.float64)
         durations_s = [fleet.service_at(pond.service_s) for pond in self.ponds]

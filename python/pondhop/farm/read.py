@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from shlex import quote
 
+from pondhop.arguments import Arguments
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm import shapes
 from pondhop.farm.coordinates import check_coordinates, wrap_longitudes
@@ -75,6 +76,14 @@ def read_farm(
     InvalidInput
         With every fault of the file: its place, what is wrong, what to do.
     """
+    arguments = Arguments()
+    arguments.path("path", path)
+    if depot is not None:
+        arguments.position("depot", depot)
+    arguments.all_kind("layers", layers, str, "give names of layers, sheets or folders as a list")
+    if not isinstance(accept, str):
+        arguments.all_kind("accept", accept, str, "give ids of ponds as a list, or 'all'")
+    arguments.check()
     with _collection_paused():
         source = read_source(Path(path), layers)
         settle_zones(source, depot)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from pondhop.arguments import Arguments
 from pondhop.documents.atomic import write_all
 from pondhop.farm.model import Farm, Pond
 from pondhop.places import Area, LonLat
@@ -20,9 +21,15 @@ def write_farm(path: str | Path, farm: Farm) -> None:
 
     Raises
     ------
+    InvalidInput
+        With what is no name of a file or no farm.
     OSError
         If the file cannot be written.
     """
+    arguments = Arguments()
+    arguments.path("path", path)
+    arguments.kind("farm", farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
+    arguments.check()
     # The role is written for ponds, too: without it a pond given as a point would be a label in one that is an outline.
     features = [_feature_json({"id": pond.id, "role": "pond"} | _service_json(pond), pond) for pond in farm.ponds]
     features.append(_point_json({"role": "depot"}, farm.depot))
