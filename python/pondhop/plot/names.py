@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +23,16 @@ _MAX_LETTERS = 24
 _OFFSET = 5.0
 """How far below a pond's marker its name stands, in points."""
 
+_NUMBER_OFFSET = 9.0
+"""The same where the number of a route stands at the pond."""
 
-def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) -> frozenset[str]:
+_HALO_WIDTH = 1.6
+"""Of the background around letters, so that a line behind them leaves them readable, in points."""
+
+
+def draw_names(
+    ax: Axes, positions: Points, names: Sequence[str], look: Look, *, numbered: Collection[int] = ()
+) -> frozenset[str]:
     """Write the name of each pond below its sampling point, in order, where neither another name nor a marker is near.
 
     Parameters
@@ -37,12 +45,16 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
         One a position.
     look
         Colours.
+    numbered
+        Positions at which the number of a route stands.
 
     Returns
     -------
     frozenset of str
         Letters of the names that no font of the machine has.
     """
+    from matplotlib.patheffects import withStroke
+
     letters = lettering(names)
     texts = [letters.written(name).strip() for name in names]
     points = _in_points(ax, positions)
@@ -53,13 +65,14 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
         text, (x, y) = texts[index], points[index]
         if not text or len(text) > _MAX_LETTERS:
             continue
-        box = (x - widths[index] / 2, x + widths[index] / 2, y - _OFFSET - height, y)
+        offset = _NUMBER_OFFSET if index in numbered else _OFFSET
+        box = (x - widths[index] / 2, x + widths[index] / 2, y - offset - height, y)
         if not boxes.add(box, own_marker=int(index)):
             continue
         ax.annotate(
             text,
             xy=tuple(positions[index]),
-            xytext=(0, -_OFFSET),
+            xytext=(0, -offset),
             textcoords="offset points",
             ha="center",
             va="top",
@@ -67,6 +80,7 @@ def draw_names(ax: Axes, positions: Points, names: Sequence[str], look: Look) ->
             fontfamily=list(letters.families),
             parse_math=False,
             color=look.ink,
+            path_effects=[withStroke(linewidth=_HALO_WIDTH, foreground=look.background)],
             zorder=5,
         )
     return letters.missing

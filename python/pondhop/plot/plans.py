@@ -21,7 +21,15 @@ from pondhop.plot.canvas import (
 )
 from pondhop.plot.look import LOOKS, Look, Theme
 from pondhop.plot.names import draw_names
-from pondhop.plot.routes import LINE_STYLES, MARKERS, draw_depot, draw_routes, draw_shading_key, marker_size
+from pondhop.plot.routes import (
+    LINE_STYLES,
+    MARKERS,
+    draw_depot,
+    draw_routes,
+    draw_shading_key,
+    marker_size,
+    numbered_ponds,
+)
 from pondhop.solution import PLAN_WANTED, FarmPlan
 from pondhop.units import Units, clock_text, counted, duration_text, energy_text, length_text
 
@@ -91,7 +99,8 @@ def drawn_plan(
     )
     draw_shading_key(ax, look)
     draw_scale_bar(ax, look, units)
-    unwritten = draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look)
+    numbered = numbered_ponds(solution.problem, plan)
+    unwritten = draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look, numbered=numbered)
     write_legend(ax, look)
     return ax, unwritten | write_title(ax, farm.name, _facts(farm_plan, units), look)
 

@@ -46,6 +46,12 @@ def draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], l
     draw_depot(ax, problem, look)
 
 
+def numbered_ponds(problem: Problem, plan: Plan) -> list[int]:
+    """Return the pond of each route that is farthest from the depot: its number stands there."""
+    distances = np.hypot(*(problem.ponds - problem.depot).T)
+    return [max(route, key=lambda pond: float(distances[pond])) for route in plan.routes]
+
+
 def draw_shading_key(ax: Axes, look: Look) -> None:
     """Say in the legend what the shaded areas are."""
     label = "shaded: around the ponds of one drone"
@@ -101,12 +107,10 @@ def _draw_arrows(ax: Axes, path: Points, colour: str, distance: float) -> None:
 
 def _draw_numbers(ax: Axes, problem: Problem, plan: Plan, look: Look) -> None:
     """Write the number of each route at the pond of it that is farthest from the depot."""
-    for index, route in enumerate(plan.routes):
-        ponds = problem.ponds[route]
-        farthest = ponds[np.argmax(np.hypot(*(ponds - problem.depot).T))]
+    for index, pond in enumerate(numbered_ponds(problem, plan)):
         ax.annotate(
             str(index + 1),
-            xy=tuple(farthest),
+            xy=tuple(problem.ponds[pond]),
             ha="center",
             va="center",
             fontsize=8,
