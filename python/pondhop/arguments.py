@@ -41,16 +41,19 @@ class Arguments:
 
     def whole(self, name: str, value: object, least: int, most: int, action: str) -> bool:
         """Whether a value is a whole number in some range."""
-        if not isinstance(value, Integral) or isinstance(value, bool):
+        # Asking for a number of Python first spares nearly everybody the slow question for one of any package.
+        if not isinstance(value, (int, Integral)) or isinstance(value, bool):
             return self.refuse(name, value, action)
         return least <= int(value) <= most or self.refuse(name, value, action)
 
     def real(self, name: str, value: object, least: float, most: float, action: str) -> bool:
         """Whether a value is a number in some range; no comparison holds for one that is none."""
-        if not isinstance(value, Real) or isinstance(value, bool):
+        if not isinstance(value, (int, float, Real)) or isinstance(value, bool):
             return self.refuse(name, value, action)
         # Whole numbers may be beyond all floats, and compare with them all the same.
-        number = int(value) if isinstance(value, Integral) else float(value)
+        number = (
+            value if isinstance(value, (int, float)) else int(value) if isinstance(value, Integral) else float(value)
+        )
         return least <= number <= most or self.refuse(name, value, action)
 
     def truth(self, name: str, value: object) -> bool:

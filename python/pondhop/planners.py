@@ -66,6 +66,7 @@ Objective = Literal["max", "total"]
 Decoding = Literal["greedy", "symmetries", "sampling"]
 """How the attention models choose: the likeliest at every step; the best of that for the farm turned and mirrored in
 all eight ways; the best of plans drawn with the model's probabilities."""
+_OBJECTIVES, _DECODINGS = get_args(Objective), get_args(Decoding)
 ProgressFunction = Callable[[float, int, float], object]
 """Told about ten times a second: longest route so far in seconds, iterations, share of the effort used."""
 
@@ -108,6 +109,9 @@ class Options:
     progress: ProgressFunction | None = None
     has_separate_airspace: bool = False
     decoding: Decoding = "greedy"
+
+
+_DEFAULTS = tuple((field.name, field.default) for field in fields(Options))
 
 
 class PlainOptions(TypedDict, total=False):
@@ -186,7 +190,7 @@ class Planner:
     def passed_over(self, options: Options) -> tuple[str, ...]:
         """Return the options that were asked for and that the planner has no use for."""
         obeyed = self.obeys | self.also_obeys(options) | {"seed", "progress"}
-        asked = [item.name for item in fields(options) if getattr(options, item.name) != item.default]
+        asked = [name for name, default in _DEFAULTS if getattr(options, name) != default]
         return tuple(name for name in asked if name not in obeyed)
 
 
@@ -397,7 +401,8 @@ def solve(
     faults = [*_faults(wishes, problem, chosen), *planner_faults]
     if chosen is None or faults:
         raise InvalidInput(faults)
-    wishes = replace(wishes, seed=int(wishes.seed))
+    if not isinstance(wishes.seed, int):
+        wishes = replace(wishes, seed=int(wishes.seed))
     cpu_start_s = time.process_time()
     planned = chosen.run(_levelled(problem, problem.layers.max(axis=0, initial=0.0)), wishes)
     cpu_s = time.process_time() - cpu_start_s
@@ -577,8 +582,8 @@ def _faults(options: Options, problem: Problem, planner: Planner | None) -> list
         arguments.whole("iterations", options.iterations, 1, 2**63 - 1, action)
     action = "give per cent, 0 or more, as in 1.5"
     arguments.real("slack_percent", options.slack_percent, 0.0, sys.float_info.max, action)
-    arguments.one_of("objective", options.objective, get_args(Objective))
-    arguments.one_of("decoding", options.decoding, get_args(Decoding))
+    arguments.one_of("objective", options.objective, _OBJECTIVES)
+    arguments.one_of("decoding", options.decoding, _DECODINGS)
     is_truth = arguments.truth("has_separate_airspace", options.has_separate_airspace)
     if is_truth and options.has_separate_airspace and planner is not None and planner.is_airspace_shared:
         message = f"{planner.name} lets drones share airspace"
