@@ -21,6 +21,7 @@ from farm_files import (
     shape,
     square,
     table,
+    workbook,
 )
 from pondhop.farm import Farm, read_farm
 from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m
@@ -488,3 +489,39 @@ def test_a_word_for_ponds_alone_is_a_pond(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("name", ["Swimming pool", "Kolam renang", "Bak air", "Hồ bơi", "Water tank"])
 def test_water_that_nobody_farms_is_no_pond(tmp_path: Path, name: str) -> None:
     assert ids(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)) == PONDS[:3]
+
+
+# ------------------------------------------------------------------------------------------------------- workbooks
+
+HEADINGS = ["Pond", "Lat", "Lon"]
+
+
+def test_every_sheet_of_a_workbook_is_read(tmp_path: Path) -> None:
+    north = [HEADINGS, ["A1", 10.101, 105.701], ["A2", 10.102, 105.702]]
+    south = [HEADINGS, ["B1", 10.111, 105.701], ["B2", 10.112, 105.702]]
+    farm = read_farm(workbook(tmp_path, North=north, South=south), depot=DEPOT)
+    assert ids(farm) == ["A1", "A2", "B1", "B2"]
+    assert not farm.notes
+
+
+def test_the_depot_may_stand_on_a_sheet_of_its_own(tmp_path: Path) -> None:
+    ponds = [HEADINGS, ["1", 10.101, 105.701], ["2", 10.102, 105.702]]
+    farm = read_farm(workbook(tmp_path, Ponds=ponds, Depot=[["Name", "Lat", "Lon"], ["Depot", 10.1, 105.7]]))
+    assert ids(farm) == ["1", "2"]
+    assert farm.depot == (105.7, 10.1)
+
+
+@pytest.mark.parametrize("notes", [[["x"]], [["This is my farm"], ["made by me"]], [["ask Tran", "07:30"]], [HEADINGS]])
+def test_a_sheet_without_places_is_left_out_wherever_it_stands(tmp_path: Path, notes: list[list[str]]) -> None:
+    ponds = [HEADINGS, ["A1", 10.101, 105.701], ["A2", 10.102, 105.702]]
+    for sheets in ({"Notes": notes, "Ponds": ponds}, {"Ponds": ponds, "Notes": notes}, {"Empty": [], "Ponds": ponds}):
+        farm = read_farm(workbook(tmp_path, **sheets), depot=DEPOT)
+        assert ids(farm) == ["A1", "A2"]
+        assert told(farm, "sheets 'Notes'") == ("Notes" in sheets)
+
+
+def test_ponds_of_one_number_on_two_sheets_are_told_apart(tmp_path: Path) -> None:
+    north = [HEADINGS, ["1", 10.101, 105.701], ["2", 10.102, 105.702]]
+    south = [HEADINGS, ["1", 10.111, 105.701], ["2", 10.112, 105.702]]
+    farm = read_farm(workbook(tmp_path, North=north, South=south), depot=DEPOT)
+    assert ids(farm) == ["North 1", "North 2", "South 1", "South 2"]

@@ -11,6 +11,7 @@ import shutil
 import stat
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -27,6 +28,15 @@ _MAGIC = {
     b"SQLite format 3\x00": "GPKG",
     b"fgb\x03": "FlatGeobuf",
 }
+_SHEETS_AS_TEXT = {
+    "OGR_XLSX_HEADERS": "DISABLE",
+    "OGR_XLSX_FIELD_TYPES": "STRING",
+    "OGR_ODS_HEADERS": "DISABLE",
+    "OGR_ODS_FIELD_TYPES": "STRING",
+}
+"""Else GDAL guesses a heading, and a type for each column from its first cells. Options of one reading it heeds for the
+first sheet alone."""
+
 _FORBIDDEN = (b"<OGRVRT", b"<VRTDataset", b"gdal_streamed_alg")
 """Marks of drivers that read other files, which GDAL looks for anywhere in the head of a file."""
 
@@ -162,20 +172,31 @@ def _lonlats(line: Any) -> list[LonLat]:
     return [(float(position[0]), float(position[1])) for position in line.coords]
 
 
+@contextmanager
+def _gdal_configured(options: dict[str, str]) -> Iterator[None]:
+    """Set options of GDAL for a while."""
+    import pyogrio
+
+    before = {name: pyogrio.get_gdal_config_option(name) for name in options}
+    pyogrio.set_gdal_config_options(options)
+    try:
+        yield
+    finally:
+        pyogrio.set_gdal_config_options(before)
+
+
 def read_sheets(path: Path, source: Source) -> dict[str, list[list[str]]]:
     """The sheets of a workbook as rows of text, as they stand."""
     import pyogrio
 
     read: Callable[..., Any] = pyogrio.raw.read
     sheets: dict[str, list[list[str]]] = {}
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), _gdal_configured(_SHEETS_AS_TEXT):
         # That a sheet has no geometry is no news.
         warnings.simplefilter("ignore")
         try:
             for name in [str(name) for name, _ in pyogrio.list_layers(path)]:
-                # Text, because GDAL would else guess a type for each column from its first cells.
-                options = {"HEADERS": "DISABLE", "FIELD_TYPES": "STRING"}
-                _, _, _, columns = read(path, layer=name, read_geometry=False, **options)
+                _, _, _, columns = read(path, layer=name, read_geometry=False)
                 cells = [["" if value is None else str(value) for value in column] for column in columns]
                 sheets[name] = [list(row) for row in zip(*cells, strict=True)]
         except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, RuntimeError) as error:

@@ -102,11 +102,10 @@ def read_sheet_rows(sheets: dict[str, list[list[str]]], source: Source) -> None:
         if not rows:
             continue
         inner = Source(name=source.name)
-        read_rows(rows, "row" if len(sheets) == 1 else f"sheet {name!r}, row", inner)
+        has_places = read_rows(rows, "row" if len(sheets) == 1 else f"sheet {name!r}, row", inner)
         for feature in inner.features:
             feature.folders = (name,) if len(sheets) > 1 else ()
-        has_columns = inner.features or not any("columns" in fault.message for fault in inner.faults)
-        (readable if has_columns else failed)[name] = inner
+        (readable if has_places else failed)[name] = inner
     if readable and failed:
         source.notes.add(f"Left out, because they have no coordinates: sheets {listed(map(repr, failed))}.")
     for inner in (readable or failed).values():
@@ -119,7 +118,7 @@ def read_sheet_rows(sheets: dict[str, list[list[str]]], source: Source) -> None:
         source.faults.append(Fault("file", "the table is empty", HEADER_ACTION))
 
 
-def read_rows(rows: Sequence[Row], word: str, source: Source) -> None:
+def read_rows(rows: Sequence[Row], word: str, source: Source) -> bool:
     """Read the lines of a table, headings first, into features.
 
     Parameters
@@ -130,17 +129,22 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> None:
         What a line is called in messages: ``line``, ``row``.
     source
         Where features, faults and notes go.
+
+    Returns
+    -------
+    bool
+        Whether headings name coordinates and there are lines below.
     """
     header, columns = _header(rows, word, source)
     if columns is None:
-        return
+        return False
     below = rows[header + 1 :]
     if not below:
         source.faults.append(Fault("file", "the table has no line but the first", "add a line for each pond"))
-        return
+        return False
     columns = replace(columns, sign_of_o=sign_of_o(columns, below, word, source))
     if not columns.sign_of_o:
-        return
+        return True
     features: list[Feature] = []
     zones: dict[str | int, list[Feature]] = {}
     has_bands = any(
@@ -166,6 +170,7 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> None:
             told = members[0].property_place.format(columns.names[columns.zone or 0])
             source.open_zones.append(OpenZone(zone, told, [feature for feature in joined if feature.place in places]))
     source.features.extend(joined)
+    return True
 
 
 def _zone(
