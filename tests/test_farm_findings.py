@@ -491,21 +491,104 @@ def test_water_that_nobody_farms_is_no_pond(tmp_path: Path, name: str) -> None:
     assert ids(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)) == PONDS[:3]
 
 
+# ------------------------------------------------------------------------------------- things named for the ponds
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "Pond 3 pump house",
+        "Pond road",
+        "Access road to ponds",
+        "Pond levee",
+        "Pond boundary",
+        "Pond office",
+        "Fish pond house",
+        "Main office near pond 2",
+        "Pond under repair - do not sample",
+        "Old pond (filled in)",
+        "A7 (abandoned)",
+    ],
+)
+def test_what_is_named_for_a_pond_or_out_of_use_is_asked_for(tmp_path: Path, name: str) -> None:
+    [fault] = faults_of(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)
+    place, problem, remedy = fault
+    assert (place, name in problem, "role" in remedy) == ("features[3]", True, True)
+
+
+@pytest.mark.parametrize("name", ["No pond", "not a pond", "Former pond"])
+def test_what_says_that_it_is_no_pond_is_left_out(tmp_path: Path, name: str) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)
+    assert ids(farm) == PONDS[:3]
+    assert told(farm, name)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "Office pond",
+        "Road pond 2",
+        "Pond by the office",
+        "Pond 3 (near pump house)",
+        "Estanque oficina",
+        "Gate Lagoon",
+        "Pond 5 North side",
+        "River pond east",
+        "Tank Farm 3",
+    ],
+)
+def test_ponds_named_for_things_beside_them_are_ponds(tmp_path: Path, name: str) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name=name)), depot=DEPOT)
+    assert (ids(farm), farm.doubts) == ([*PONDS[:3], name], ())
+
+
+@pytest.mark.parametrize(
+    ("tag", "value"),
+    [("landuse", "military"), ("aeroway", "aerodrome"), ("military", "danger_area"), ("aeroway", "runway")],
+)
+def test_tags_of_maps_keep_drones_out(tmp_path: Path, tag: str, value: str) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, **{tag: value})), depot=DEPOT)
+    assert (ids(farm), len(farm.no_fly)) == (PONDS[:3], 1)
+    assert told(farm, f"{tag}={value}")
+
+
+@pytest.mark.parametrize(
+    ("tag", "value"),
+    [
+        ("highway", "service"),
+        ("power", "substation"),
+        ("amenity", "school"),
+        ("place", "island"),
+        ("landuse", "landfill"),
+        ("category", "Facility"),
+        ("category", "Woods"),
+    ],
+)
+def test_tags_of_maps_tell_what_is_no_pond(tmp_path: Path, tag: str, value: str) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, **{tag: value})), depot=DEPOT)
+    assert (ids(farm), len(farm.no_fly)) == (PONDS[:3], 0)
+
+
+def test_a_column_that_is_called_like_a_tag_says_nothing(tmp_path: Path) -> None:
+    assert len(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, power="3 kW")), depot=DEPOT).ponds) == 4
+
+
 # ------------------------------------------------------------------------------------------------------- workbooks
 
-HEADINGS = ["Pond", "Lat", "Lon"]
+Rows = list[list[object]]
+HEADINGS: list[object] = ["Pond", "Lat", "Lon"]
 
 
 def test_every_sheet_of_a_workbook_is_read(tmp_path: Path) -> None:
-    north = [HEADINGS, ["A1", 10.101, 105.701], ["A2", 10.102, 105.702]]
-    south = [HEADINGS, ["B1", 10.111, 105.701], ["B2", 10.112, 105.702]]
+    north: Rows = [HEADINGS, ["A1", 10.101, 105.701], ["A2", 10.102, 105.702]]
+    south: Rows = [HEADINGS, ["B1", 10.111, 105.701], ["B2", 10.112, 105.702]]
     farm = read_farm(workbook(tmp_path, North=north, South=south), depot=DEPOT)
     assert ids(farm) == ["A1", "A2", "B1", "B2"]
     assert not farm.notes
 
 
 def test_the_depot_may_stand_on_a_sheet_of_its_own(tmp_path: Path) -> None:
-    ponds = [HEADINGS, ["1", 10.101, 105.701], ["2", 10.102, 105.702]]
+    ponds: Rows = [HEADINGS, ["1", 10.101, 105.701], ["2", 10.102, 105.702]]
     farm = read_farm(workbook(tmp_path, Ponds=ponds, Depot=[["Name", "Lat", "Lon"], ["Depot", 10.1, 105.7]]))
     assert ids(farm) == ["1", "2"]
     assert farm.depot == (105.7, 10.1)
@@ -513,7 +596,7 @@ def test_the_depot_may_stand_on_a_sheet_of_its_own(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("notes", [[["x"]], [["This is my farm"], ["made by me"]], [["ask Tran", "07:30"]], [HEADINGS]])
 def test_a_sheet_without_places_is_left_out_wherever_it_stands(tmp_path: Path, notes: list[list[str]]) -> None:
-    ponds = [HEADINGS, ["A1", 10.101, 105.701], ["A2", 10.102, 105.702]]
+    ponds: Rows = [HEADINGS, ["A1", 10.101, 105.701], ["A2", 10.102, 105.702]]
     for sheets in ({"Notes": notes, "Ponds": ponds}, {"Ponds": ponds, "Notes": notes}, {"Empty": [], "Ponds": ponds}):
         farm = read_farm(workbook(tmp_path, **sheets), depot=DEPOT)
         assert ids(farm) == ["A1", "A2"]
@@ -521,7 +604,7 @@ def test_a_sheet_without_places_is_left_out_wherever_it_stands(tmp_path: Path, n
 
 
 def test_ponds_of_one_number_on_two_sheets_are_told_apart(tmp_path: Path) -> None:
-    north = [HEADINGS, ["1", 10.101, 105.701], ["2", 10.102, 105.702]]
-    south = [HEADINGS, ["1", 10.111, 105.701], ["2", 10.112, 105.702]]
+    north: Rows = [HEADINGS, ["1", 10.101, 105.701], ["2", 10.102, 105.702]]
+    south: Rows = [HEADINGS, ["1", 10.111, 105.701], ["2", 10.112, 105.702]]
     farm = read_farm(workbook(tmp_path, North=north, South=south), depot=DEPOT)
     assert ids(farm) == ["North 1", "North 2", "South 1", "South 2"]

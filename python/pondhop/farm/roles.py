@@ -24,8 +24,8 @@ from pondhop.farm.features import (
     text_of,
 )
 from pondhop.farm.shapes import closed_line
-from pondhop.farm.vocabulary import column_words, pond_like_words
-from pondhop.farm.words import Meaning, is_unnamed, meanings, series_of, word_for
+from pondhop.farm.vocabulary import column_words, pond_like_words, tag_meanings, tags_of_anything_else
+from pondhop.farm.words import Meaning, is_unnamed, meanings, series_of, thing_named_for_pond, word_for
 from pondhop.units import counted
 
 ROLES = ("pond", "depot", "station", "no_fly", "fence", "other")
@@ -38,24 +38,7 @@ ROLE_COLUMNS = column_words("roles")
 KIND_COLUMNS = column_words("kinds")
 _DECLARING_COLUMNS = ("service_s", "sampling_point", "pond_id", "pond", "pond_name", "pond_no", "pond_number")
 
-_OSM_OTHER = ("building", "highway", "railway", "aeroway", "power", "barrier", "man_made", "amenity")
-_OSM_VALUES: dict[str, dict[str, Meaning]] = {
-    "landuse": {
-        **dict.fromkeys(("aquaculture", "basin", "reservoir", "pond", "salt_pond"), Meaning.POND),
-        **dict.fromkeys(
-            ("residential", "farmland", "farmyard", "forest", "industrial", "commercial", "meadow", "grass", "orchard"),
-            Meaning.OTHER,
-        ),
-    },
-    "natural": {
-        "water": Meaning.POND,
-        **dict.fromkeys(("tree", "wood", "scrub", "coastline", "wetland"), Meaning.OTHER),
-    },
-    "water": dict.fromkeys(("pond", "fishpond", "reservoir", "basin", "lake", "lagoon"), Meaning.POND),
-    "waterway": dict.fromkeys(("river", "stream", "canal", "drain", "ditch", "dam", "weir"), Meaning.OTHER),
-}
-
-OSM_KEYS = (*_OSM_OTHER, *_OSM_VALUES)
+OSM_KEYS = tuple(dict.fromkeys((*tags_of_anything_else(), *(key for key, _ in tag_meanings()))))
 """Tags of OpenStreetMap that say what a feature is, not what it is called."""
 
 
@@ -356,9 +339,12 @@ def _verdict(feature: Feature, has_layers: bool, source: Source) -> Verdict | No
         if Meaning.NO_FLY in meanings(name) or second is Meaning.NO_FLY:
             because = said if second is not Meaning.NO_FLY else f"{said}, but {hinted}"
             return Verdict(None, because, name, is_doubtful=True)
-        if _is_point(feature) and {Meaning.OTHER, Meaning.START} & meanings(name):
+        is_something_at_pond = _is_point(feature) and bool({Meaning.OTHER, Meaning.START} & meanings(name))
+        if is_something_at_pond or thing_named_for_pond(name) is not None or Meaning.UNUSED in meanings(name):
             return Verdict(None, said, name, is_doubtful=True)
         return Verdict(first, said, name)
+    if first is None and name and Meaning.UNUSED in meanings(name):
+        return Verdict(None, said, name, is_doubtful=True)
     if first is Meaning.UNCERTAIN and second is None:
         return Verdict(first, said, name)
     if first is None or first is Meaning.UNCERTAIN:
@@ -440,9 +426,10 @@ def _tags(feature: Feature) -> Iterator[tuple[Meaning | None, str, str]]:
             continue
         text = f"{key}={str(value)[:40]}"
         told = f"it has {text}"
-        if key in _OSM_OTHER and (is_osm or str(value) == "yes"):
+        meaning = tag_meanings().get((key, str(value)))
+        if meaning is not None:
+            yield Meaning[meaning.upper()], told, text
+        elif key in tags_of_anything_else() and (is_osm or str(value) == "yes"):
             yield Meaning.OTHER, told, text
-        elif key in _OSM_VALUES:
-            yield _OSM_VALUES[key].get(str(value)), told, text
         elif str(value).strip().lower() in {"yes", "true", "1"} and meanings(key) == {Meaning.NO_FLY}:
             yield Meaning.NO_FLY, told, text

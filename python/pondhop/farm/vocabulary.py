@@ -6,10 +6,11 @@ import re
 import tomllib
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 
 @cache
-def _tables() -> dict[str, dict[str, str]]:
+def _tables() -> dict[str, Any]:
     return tomllib.loads(files("pondhop.farm").joinpath("words.toml").read_text(encoding="utf-8"))
 
 
@@ -35,6 +36,30 @@ def hemisphere_words() -> dict[str, tuple[str, ...]]:
 def letter_o_words() -> dict[str, frozenset[str]]:
     """Words of the languages in which the letter O is east, and of those in which it is west."""
     return {side: frozenset(word.casefold() for word in _parted(text)) for side, text in _tables()["letter_o"].items()}
+
+
+@cache
+def tags_of_anything_else() -> tuple[str, ...]:
+    """Tags of OpenStreetMap of which every value says that a thing is no pond."""
+    return _parted(_tables()["map_tags"]["anything"])
+
+
+@cache
+def tag_meanings() -> dict[tuple[str, str], str]:
+    """What tags of OpenStreetMap say, by key and value: the name of a meaning."""
+    groups = {name: tags for name, tags in _tables()["map_tags"].items() if name != "anything"}
+    return {
+        (key, value): meaning
+        for meaning, tags in groups.items()
+        for key, values in tags.items()
+        for value in _parted(values)
+    }
+
+
+@cache
+def english_words(kind: str) -> frozenset[str]:
+    """English words for ponds, or those before which the name of a thing ends."""
+    return frozenset(word.casefold() for word in _parted(_tables()["english"][kind]))
 
 
 @cache

@@ -13,7 +13,7 @@ import unicodedata
 from enum import Enum
 from functools import cache, lru_cache
 
-from pondhop.farm.vocabulary import meaning_words
+from pondhop.farm.vocabulary import english_words, meaning_words, pond_like_words
 
 
 class Meaning(Enum):
@@ -34,6 +34,8 @@ class Meaning(Enum):
     """A place where water is taken."""
     SERIES = "series"
     """Said of stations of drones, and of the numbered places where a farm measures: station, waypoint, dock."""
+    UNUSED = "unused"
+    """Said of ponds in which there is nothing to measure: abandoned, under repair."""
     UNNAMED = "unnamed"
     """What a program calls things that nobody named."""
 
@@ -140,6 +142,30 @@ def meanings(text: str) -> frozenset[Meaning]:
 def word_for(text: str, meaning: Meaning) -> str:
     """The word of a name that has a meaning, as it is written there; the whole name if no single word has it."""
     return next((word for word, said in _told(text)[0] if meaning in said), text)
+
+
+_THINGS = {Meaning.POND, Meaning.OTHER, Meaning.DEPOT, Meaning.START, Meaning.STATION, Meaning.FENCE, Meaning.BOUNDARY}
+
+
+def thing_named_for_pond(text: str) -> str | None:
+    """The word for what a thing is that has an English word for ponds in its name: a "pond road" is a road.
+
+    ``None`` for ponds, such as a "road pond" or a "pond by the road", and for names in other languages, in many of
+    which the first word says what a thing is.
+    """
+    if not any(_is_english_pond(phrase) for phrase, _ in _told(text)[0]):
+        return None
+    written = _split(text)
+    end = next((at for at, word in enumerate(written) if at and word in english_words("before_places")), len(written))
+    things = [(phrase, said) for phrase, said in _told(" ".join(written[:end]))[0] if _THINGS & said]
+    if not things or written[end - 1] in pond_like_words():
+        return None
+    phrase, said = things[-1]
+    return None if {Meaning.POND, Meaning.SERIES} & said else phrase
+
+
+def _is_english_pond(phrase: str) -> bool:
+    return {phrase, phrase.removesuffix("s")} & english_words("ponds") != set()
 
 
 def series_of(text: str) -> tuple[str, tuple[str, ...]] | None:
