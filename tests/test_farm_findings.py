@@ -90,6 +90,43 @@ def test_stations_of_drones_stay_what_they_are(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("others", "names", "word"),
+    [
+        (["A1", "B2", "C3"], ["Dock 1", "Dock 2", "Dock 3", "Dock 4"], "dock"),
+        (["1", "2", "3"], ["Sensor 1", "Sensor 2", "Sensor 3", "Sensor 4"], "sensor"),
+        (["1", "2", "3"], ["Sensor 1", "Sensor 2"], "sensor"),
+        (["Berta", "Anna", "Carl"], [f"Waypoint {number}" for number in range(1, 5)], "waypoint"),
+        (["Anna"], ["Dock 1", "Dock 2"], "dock"),
+        (["Anna", "Berta"], ["Station 1", "Station 2"], "station"),
+    ],
+)
+def test_numbered_points_beside_others_are_one_question(
+    tmp_path: Path, others: list[str], names: list[str], word: str
+) -> None:
+    [(place, message, action)] = faults_of(points(tmp_path, *others, *names, "Depot"))
+    assert place == f"line {2 + len(others)}"
+    assert f"are these ponds? {len(names)} points with the word {word!r}" in message
+    assert all(repr(name) in message for name in names)
+    assert "role" in action
+    text = points(tmp_path, *others, *names).read_text("utf-8").replace("\n", ",pond\n").replace(",pond", ",role", 1)
+    answered = read_farm(table(tmp_path, f"{text},pond\n"), depot=DEPOT)
+    assert ids(answered) == [*others, *names]
+
+
+def test_two_series_are_in_doubt_whichever_comes_first(tmp_path: Path) -> None:
+    docks, stations = [f"Dock {number}" for number in (1, 2)], [f"Station {number}" for number in (1, 2, 3)]
+    for names in ([*docks, *stations], [*stations, *docks], [*docks, *stations[:2]]):
+        faults = faults_of(points(tmp_path, *names), depot=DEPOT)
+        assert sorted(message.split("the word ")[1].split()[0] for _, message, _ in faults) == ["'dock'", "'station'"]
+
+
+@pytest.mark.parametrize("others", [["Pond 1"], ["Sampling point 1"], ["Laguna Norte"]])
+def test_no_number_of_stations_beside_a_pond_is_asked_for(tmp_path: Path, others: list[str]) -> None:
+    farm = read_farm(points(tmp_path, *others, "Dock 1", "Dock 2", "Dock 3"), depot=DEPOT)
+    assert (ids(farm), len(farm.stations)) == (others, 3)
+
+
+@pytest.mark.parametrize(
     ("names", "what", "word"),
     [
         (["Charging station 1", "Charging station 2"], "a station of the drones", "charging station"),
@@ -373,6 +410,30 @@ def test_a_map_that_is_hidden_as_a_whole_is_read_with_a_note(tmp_path: Path) -> 
         assert farm.notes == (
             "In the map program all 2 ponds are hidden; taken all the same, because the file has no other pond.",
         )
+
+
+def pin(name: str, row: int, inside: str = "") -> str:
+    return placemark(name, f"{inside}<Point><coordinates>105.7,10.1{row:02}</coordinates></Point>")
+
+
+def test_hidden_ponds_make_no_ponds_of_stations(tmp_path: Path) -> None:
+    hidden = "".join(pond_mark(n, inside=HIDDEN) for n in (1, 2, 3))
+    farm = read_farm(kml(tmp_path, hidden, pin("Station 1", 1), pin("Station 2", 2)), depot=DEPOT)
+    assert (ids(farm), len(farm.stations)) == (["Pond 1", "Pond 2", "Pond 3"], 2)
+    pins = [pin("Anna", 3, HIDDEN), pin("Berta", 4, HIDDEN), pin("Station 1", 1), pin("Station 2", 2)]
+    assert "are these ponds? 2 points" in faults_of(kml(tmp_path, *pins), depot=DEPOT)[0][1]
+
+
+def test_hidden_members_of_a_series_of_ponds_are_left_out(tmp_path: Path) -> None:
+    pins = [pin(f"Station {n}", n) for n in (1, 2, 3)]
+    farm = read_farm(kml(tmp_path, *pins, pin("Station 4", 4, HIDDEN)), depot=DEPOT)
+    assert (ids(farm), farm.stations) == (["Station 1", "Station 2", "Station 3"], ())
+    assert told(farm, "3 points with the word 'station' are taken as ponds")
+    assert told(farm, "hidden in the map program (to sample it, tick it there and save the map again): 'Station 4'")
+    docks = read_farm(kml(tmp_path, *pins, pin("Dock 1", 5, HIDDEN), pin("Dock 2", 6, HIDDEN)), depot=DEPOT)
+    assert (ids(docks), len(docks.stations)) == (["Station 1", "Station 2", "Station 3"], 2)
+    everything = [pin(f"Station {n}", n, HIDDEN) for n in (1, 2)]
+    assert ids(read_farm(kml(tmp_path, *everything, pin("Office", 7)), depot=DEPOT)) == ["Station 1", "Station 2"]
 
 
 def test_hidden_areas_keep_drones_out_and_hidden_depots_give_way(tmp_path: Path) -> None:

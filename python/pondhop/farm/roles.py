@@ -167,30 +167,59 @@ def _leave_hidden(told: Sorted, source: Source) -> None:
 
 
 def _with_series(judged: Sequence[tuple[Feature, Verdict]], source: Source) -> list[tuple[Feature, Verdict]]:
-    """What each feature is, where many numbered points of one word such as station are the ponds, if no others are.
+    """What each feature is, where numbered points of one word such as station may be the ponds.
 
-    Who measures at points calls them Station 1, Station 2, ...; one Station beside ponds is where drones charge.
+    Who measures at points calls them Station 1, Station 2, ...; one Station beside ponds is where drones charge. They
+    are ponds where nothing else may be one, and none where something else surely is. In between they are in doubt, all
+    in one fault, unless they are stations by their word and fewer than the other points. Hidden ponds are ponds.
     """
-    seen = [(feature, verdict) for feature, verdict in judged if not feature.is_hidden] or judged
-    rivals = [(feature, verdict) for feature, verdict in seen if _may_be_pond(verdict)]
-    if any(_is_closed(feature) or verdict.meaning is Meaning.POND for feature, verdict in rivals):
+    rivals = [(feature, verdict) for feature, verdict in judged if _may_be_pond(verdict)]
+    if any(_is_surely_pond(feature, verdict) for feature, verdict in rivals):
         return list(judged)
-    series: dict[str, list[Feature]] = {}
-    for feature, verdict in seen:
+    num_rivals = sum(_is_point(feature) for feature, _ in rivals)
+    series = _series_to_judge(judged, rivals)
+    if num_rivals == 0 and len(series) == 1:
+        [(word, members)] = series.items()
+        seen = [feature for feature, _ in members if not feature.is_hidden] or [feature for feature, _ in members]
+        source.notes.add(
+            f"{len(seen)} points with the word {word!r} are taken as ponds, because no other feature is one: "
+            f"{listed(feature.told() for feature in seen)}. A station of the drones has the role station."
+        )
+        places = {feature.place for feature, _ in members}
+        return [(feature, Verdict(Meaning.POND) if feature.place in places else verdict) for feature, verdict in judged]
+    asked: set[str] = set()
+    for word, members in series.items():
+        if len(members) < num_rivals and all(verdict.meaning is Meaning.STATION for _, verdict in members):
+            continue
+        asked.update(feature.place for feature, _ in members)
+        names = listed(feature.told() for feature, _ in members)
+        message = (
+            f"are these ponds? {len(members)} points with the word {word!r} beside others that may be ponds: {names}"
+        )
+        action = "say so in a property role of each: pond, station or other; or rename the ponds, as in 'Pond 7'"
+        source.faults.append(Fault(members[0][0].place, message, action))
+    return [(feature, verdict) for feature, verdict in judged if feature.place not in asked]
+
+
+def _series_to_judge(
+    judged: Sequence[tuple[Feature, Verdict]], rivals: Sequence[tuple[Feature, Verdict]]
+) -> dict[str, list[tuple[Feature, Verdict]]]:
+    """Points that may be series of sampling points, by their words; none hidden as a whole while others are seen."""
+    series: dict[str, list[tuple[Feature, Verdict]]] = {}
+    for feature, verdict in judged:
         word = _series_word(feature, verdict)
         if word is not None:
-            series.setdefault(word, []).append(feature)
-    if not series:
-        return list(judged)
-    word, members = max(series.items(), key=lambda item: len(item[1]))
-    if len(members) < max(MIN_SERIES, 1 + sum(_is_point(feature) for feature, _ in rivals)):
-        return list(judged)
-    source.notes.add(
-        f"{len(members)} points with the word {word!r} are taken as ponds, because no other feature is one: "
-        f"{listed(feature.told() for feature in members)}. A station of the drones has the role station."
-    )
-    places = {feature.place for feature in members}
-    return [(feature, Verdict(Meaning.POND) if feature.place in places else verdict) for feature, verdict in judged]
+            series.setdefault(word, []).append((feature, verdict))
+    series = {word: members for word, members in series.items() if len(members) >= MIN_SERIES}
+    seen = {word: members for word, members in series.items() if any(not feature.is_hidden for feature, _ in members)}
+    is_all_hidden = not seen and all(feature.is_hidden for feature, _ in rivals)
+    return series if is_all_hidden else seen
+
+
+def _is_surely_pond(feature: Feature, verdict: Verdict) -> bool:
+    """Whether something that may be a pond is one beyond doubt, or is drawn as only ponds are."""
+    is_named = verdict.meaning is Meaning.POND or Meaning.SAMPLING in meanings(feature.name)
+    return is_named or _is_closed(feature) or _is_declared(feature)
 
 
 def _may_be_pond(verdict: Verdict) -> bool:
