@@ -24,7 +24,8 @@ from farm_files import (
     workbook,
 )
 from pondhop.farm import Farm, read_farm
-from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m
+from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m, places_together
+from pondhop.places import wrapped_longitude
 
 
 def points(folder: Path, *names: str, heading: str = "name") -> Path:
@@ -316,6 +317,21 @@ def test_two_points_at_one_place_are_a_doubt_that_names_both(tmp_path: Path, lon
     assert (doubt.pond_id, doubt.message) == ("C", "line 4: pond C lies where pond A lies (line 2)")
     assert told(farm, "line 4: pond C lies where pond A lies (line 2); correct one of the two.")
     assert read_farm(table(tmp_path, text), depot=DEPOT, accept=["C"]).doubts == ()
+
+
+@pytest.mark.parametrize(("lon", "lat"), [(174.0, -41.0), (-90.9, 33.4), (179.999999, -17.0), (25.0, 64.0)])
+@pytest.mark.parametrize(
+    ("east", "north"), [(0.6, 0.8), (-0.6, 0.8), (0.8, -0.6), (-0.8, -0.6), (1.0, 0.0), (0.0, 1.0)]
+)
+def test_places_are_together_by_their_distance_on_the_ground(lon: float, lat: float, east: float, north: float) -> None:
+    def away(distance_m: float) -> tuple[float, float]:
+        east_deg = distance_m * east / METRES_PER_DEGREE / cos(radians(lat))
+        return (wrapped_longitude(lon + east_deg), lat + distance_m * north / METRES_PER_DEGREE)
+
+    assert places_together([(lon, lat), away(0.99)], 1.0) == [(0, 1)]
+    assert places_together([(lon, lat), away(1.01)], 1.0) == []
+    # Another farm elsewhere changes nothing.
+    assert places_together([(105.7, 10.1), (lon, lat), away(1.01), away(0.99)], 1.0) == [(1, 3)]
 
 
 # --------------------------------------------------------------------------------------- what is left out by its kind

@@ -14,7 +14,7 @@ import numpy as np
 
 from pondhop.errors import Fault
 from pondhop.farm.features import Positions
-from pondhop.places import EARTH_RADIUS_M, Area, LonLat, Ring, unrolled_longitude, wrapped_longitude
+from pondhop.places import EARTH_RADIUS_M, Area, LonLat, Ring, distance_m, unrolled_longitude, wrapped_longitude
 from pondhop.units import counted
 
 if TYPE_CHECKING:
@@ -209,18 +209,19 @@ def places_within(points: Sequence[LonLat], outlines: Sequence[Area]) -> list[tu
 def places_together(points: Sequence[LonLat], within_m: float) -> list[tuple[int, int]]:
     """Pairs (i, j): place j lies that near to place i, which comes before it and is itself near none before.
 
-    Found in cells of that width, so that thousands of places on one spot take no longer than others.
+    Found in cells at least that wide, so that thousands of places on one spot take no longer than others.
     """
     if len(points) < 2:
         return []
     lonlats = _unrolled(tuple(points), points[0][0])
-    shrink = np.cos(np.radians(lonlats[:, 1]))
-    metres = METRES_PER_DEGREE * np.column_stack([lonlats[:, 0] * shrink, lonlats[:, 1]])
+    # One cosine, for degrees that are each shortened by their own are sheared; the smallest, for cells wide enough.
+    shrink = np.cos(np.radians(np.abs(lonlats[:, 1]).max()))
+    metres = METRES_PER_DEGREE * (lonlats - lonlats[0]) * [shrink, 1.0]
     alone: dict[tuple[int, int], list[int]] = {}
     pairs = []
     for place, (column, row) in enumerate(np.floor(metres / within_m).astype(int).tolist()):
         around = (cell for x in (-1, 0, 1) for y in (-1, 0, 1) for cell in alone.get((column + x, row + y), ()))
-        near = [other for other in around if math.dist(metres[place], metres[other]) < within_m]
+        near = [other for other in around if distance_m(points[place], points[other]) < within_m]
         if near:
             pairs.append((min(near), place))
         else:
