@@ -21,7 +21,7 @@ MIN_WORDED = 5
 MAX_ODD_SHARE = 1.0 / 3.0
 """Of those that follow the pattern may be as many others for them to be odd; more are names of another kind."""
 
-MIN_SERIES = 3
+MIN_OTHER_SERIES = 3
 """Names of another word and a number that are a series of their own."""
 
 
@@ -53,7 +53,7 @@ def odd_names(drafts: Sequence[Draft], sure: set[str]) -> list[Doubt]:
         for draft, name, own, fits in zip(firsts, names, stems, follows, strict=True)
         if not fits
         and draft.feature.place not in sure
-        and (own is None or counts[own] < MIN_SERIES)
+        and (own is None or counts[own] < MIN_OTHER_SERIES)
         and draft.feature.name
         and not _is_ordinary(name)
     ]

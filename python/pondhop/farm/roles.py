@@ -55,7 +55,7 @@ _TAKEN_FOR = {
     Meaning.DEPOT: "the depot",
     Meaning.START: "a place to take off from",
     Meaning.STATION: "a station of the drones",
-    Meaning.NO_FLY: "a no-fly area",
+    Meaning.NO_FLY: "a no-fly zone",
     Meaning.FENCE: "a fence",
     Meaning.BOUNDARY: "a boundary of land",
     Meaning.OTHER: "something beside ponds",
