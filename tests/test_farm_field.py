@@ -425,7 +425,7 @@ def test_a_column_of_any_heading_names_the_ponds_where_none_is_known(tmp_path: P
     farm = read_farm(table(tmp_path, text), depot=DEPOT)
     assert ids(farm) == ["Alpha", "Beta 2"]
     if heading not in {"имя", "שם", "nazwa"}:
-        assert f"No column is known to hold names; the features are named by column {heading!r}." in farm.notes
+        assert f"The ponds are named by column {heading!r}, because no column is known to hold names." in farm.notes
     features = [polygon(index, 0, depth=2, **{heading: name}) for index, (name, _) in enumerate(rows)]
     farm = read_farm(geojson(tmp_path, *features, shape("Point", [*DEPOT], role="depot")))
     assert (ids(farm), len(farm.no_fly)) == (["Alpha", "Beta 2"], 1)

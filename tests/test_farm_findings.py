@@ -505,6 +505,47 @@ def test_numbers_in_columns_of_codes_are_read_from_maps_too(tmp_path: Path) -> N
     assert ids(read_farm(geojson(tmp_path, *features), depot=DEPOT)) == ["4", "7"]
 
 
+@pytest.mark.parametrize(
+    ("heading", "values"),
+    [
+        ("field pH", ["7.1", "7.2"]),
+        ("point depth", ["2", "3"]),
+        ("unit area", ["12", "13"]),
+        ("number of fish", ["100", "200"]),
+        ("fish per tank", ["100", "200"]),
+        ("cell count", ["7", "8"]),
+        ("sample no", ["1.5", "1.6"]),
+        ("número de peces", ["100", "200"]),
+        ("number of ponds", ["4", "5"]),
+    ],
+)
+def test_what_was_measured_is_no_name(tmp_path: Path, heading: str, values: list[str]) -> None:
+    farm = read_farm(points(tmp_path, *values, heading=heading), depot=DEPOT)
+    assert ids(farm) == ["1", "2"]
+    assert told(farm, "2 ponds without an id were numbered")
+
+
+@pytest.mark.parametrize(
+    "heading", ["Site Code", "SiteNo", "sample_no", "Fish tank", "Código estanque", "nº de piscina", "numéro du bassin"]
+)
+def test_what_ponds_are_called_by_a_number_is_their_name(tmp_path: Path, heading: str) -> None:
+    farm = read_farm(points(tmp_path, "12", "13", heading=heading), depot=DEPOT)
+    assert ids(farm) == ["12", "13"]
+    assert told(farm, f"The ponds are named by column {heading!r}, because no column is known to hold names.")
+
+
+@pytest.mark.parametrize("values", [["12", "13", "17"], ["Norte", "Sur", "Este"]])
+def test_the_name_of_a_depot_hides_no_names_of_ponds(tmp_path: Path, values: list[str]) -> None:
+    features = [shape("Point", [105.7, 10.1 + 0.001 * n], Site=value) for n, value in enumerate(values)]
+    for depot in ({"name": "Depot"}, {"role": "depot", "name": "Base"}, {"role": "depot"}, {"type": "depot"}):
+        farm = read_farm(geojson(tmp_path, *features, shape("Point", list(DEPOT), **depot)))
+        assert ids(farm) == values
+        assert told(farm, "The ponds are named by column 'Site', because no column is known to hold names.")
+    zone = polygon(5, 5, Site="No fly zone")
+    farm = read_farm(geojson(tmp_path, *features, zone, shape("Point", list(DEPOT), name="Depot")))
+    assert (ids(farm), len(farm.no_fly)) == (values, 1)
+
+
 BESIDE = ("Office", "Pump house", "No fly", "Gate", "Road")
 
 

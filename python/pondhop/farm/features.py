@@ -71,6 +71,8 @@ class Feature:
         What was guessed about its position while reading, a sentence each; only its owner can tell whether it is right.
     is_hidden
         Whether its owner had unticked it, or a folder around it, in the map program.
+    name_column
+        A column of any heading that holds its name where none is known to.
     """
 
     place: str
@@ -82,6 +84,7 @@ class Feature:
     style: str = ""
     doubts: list[str] = field(default_factory=list)
     is_hidden: bool = False
+    name_column: str = ""
 
     def find(self, *names: str) -> tuple[str, object] | None:
         """The first property that is there under one of the names, as the file spells it, and its value.
@@ -97,7 +100,7 @@ class Feature:
     @property
     def name(self) -> str:
         """What people call it, for messages; empty if they do not."""
-        found = self.find(*NAME_COLUMNS)
+        found = self.find(*NAME_COLUMNS) or (self.find(self.name_column) if self.name_column else None)
         return clean_text(text_of(found[1])) if found else ""
 
     def told(self) -> str:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from pondhop.errors import Fault
+from pondhop.farm.degrees import plain_number
 from pondhop.farm.features import (
     NAME_COLUMNS,
     Feature,
@@ -19,8 +20,8 @@ from pondhop.farm.features import (
 )
 from pondhop.farm.ponds import Draft
 from pondhop.farm.roles import KIND_COLUMNS, OSM_KEYS, POND_COLUMNS, ROLE_COLUMNS
-from pondhop.farm.vocabulary import column_words
-from pondhop.farm.words import heading_words, is_plain_word, is_unnamed
+from pondhop.farm.vocabulary import column_words, english_words
+from pondhop.farm.words import Meaning, heading_words, is_plain_word, is_unnamed, meanings
 from pondhop.places import distance_m
 
 _CODE_WORDS = frozenset(column_words("codes"))
@@ -32,6 +33,14 @@ _PREFERRED = ("id", "pond_id", "pond", "pond_name", "pond_no", "name", "label")
 _PROGRAM_COLUMNS = ("@id", "fid", "osm_id", "osm_way_id", "objectid", "gid", "ogc_fid", "uid", "uuid", "gml_id")
 """Columns that programs fill in: they tell ponds apart, but nobody calls them so."""
 
+_NO_NAME_COLUMNS = frozenset(
+    map(normal_name, (*ROLE_COLUMNS, *KIND_COLUMNS, *OSM_KEYS, *_PROGRAM_COLUMNS, "service_s", "sampling_point"))
+)
+"""Columns that name no pond, whatever they hold."""
+
+_OF_PONDS = frozenset({Meaning.POND, Meaning.SAMPLING, Meaning.SERIES, Meaning.UNCERTAIN, Meaning.UNNAMED})
+"""What the name of a pond may say."""
+
 MAX_ID_LETTERS = 40
 """A column with longer values is a remark."""
 
@@ -39,24 +48,29 @@ COPY_M = 2.0
 """Ponds nearer than this with one id in two layers are one pond drawn twice."""
 
 
-def adopt_names(features: Sequence[Feature], source: Source) -> None:
+def adopt_names(features: Sequence[Feature]) -> None:
     """Take the first column of texts that tells the features apart as their names, where no column is known to be one.
 
-    Before anything is told by its name: an area to keep out of may have its name in a column of any heading.
+    Before anything is told by its name: an area to keep out of may have its name in a column of any heading. What has a
+    role, or is no pond by its own name, as one depot beside ponds without names is, says nothing of the others.
     """
-    candidates = [feature for feature in features if feature.find(*ROLE_COLUMNS) is None]
     known = (*NAME_COLUMNS, *POND_COLUMNS)
-    if len(candidates) < 2 or any(feature.find(*known) for feature in features):
-        return
-    column = next(_other_columns(candidates, list(map(normal_name, (*KIND_COLUMNS, *OSM_KEYS)))), None)
-    if column is None:
-        return
+    candidates = []
     for feature in features:
-        found = feature.find(column)
-        if found is not None:
-            key, value = found
-            feature.properties = {"name": text_of(value), **feature.properties}
-    source.notes.add(f"No column is known to hold names; the features are named by column {key!r}.")
+        found = feature.find(*known)
+        if feature.find(*ROLE_COLUMNS) is None and (found is None or _may_name_pond(clean_text(text_of(found[1])))):
+            candidates.append(feature)
+    if len(candidates) < 2 or any(feature.find(*known) for feature in candidates):
+        return
+    column = next(_other_columns(candidates, ()), None)
+    if column is not None:
+        for feature in features:
+            feature.name_column = column
+
+
+def _may_name_pond(name: str) -> bool:
+    """Whether a name says nothing, or anything else than that a thing is none of the ponds."""
+    return not meanings(name) or bool(meanings(name) & _OF_PONDS)
 
 
 def name_ponds(drafts: Sequence[Draft], source: Source) -> None:
@@ -78,7 +92,8 @@ def _columns(features: Sequence[Feature]) -> list[str]:
     preferred = [normal_name(name) for name in _PREFERRED]
     of_ponds = [key for key in in_file if key in POND_COLUMNS and key not in preferred]
     of_names = [normal_name(name) for name in NAME_COLUMNS if normal_name(name) in in_file]
-    return list(dict.fromkeys([*(key for key in preferred if key in in_file), *of_ponds, *of_names]))
+    adopted = [feature.name_column for feature in features if feature.name_column in in_file]
+    return list(dict.fromkeys([*(key for key in preferred if key in in_file), *of_ponds, *of_names, *adopted]))
 
 
 def _heading(features: Sequence[Feature], column: str) -> str:
@@ -98,7 +113,11 @@ def _ids(features: Sequence[Feature], source: Source) -> dict[int, str]:
     columns = _columns(features)
     values = {column: [_value(feature, column) for feature in features] for column in columns}
     telling = next((column for column in columns if _tells_apart(values[column])), None)
-    if telling is None and any(len(set(filter(None, values[column]))) > 1 or len(features) > 2 for column in columns):
+    is_any_named = any(map(any, values.values()))
+    if telling is None and (
+        any(len(set(filter(None, values[column]))) > 1 for column in columns)
+        or len(features) > (2 if is_any_named else 1)
+    ):
         telling = next(_other_columns(features, columns), None)
         if telling is not None:
             values[telling] = [_value(feature, telling) for feature in features]
@@ -108,7 +127,7 @@ def _ids(features: Sequence[Feature], source: Source) -> dict[int, str]:
             for column in columns[: columns.index(telling) if telling in columns else None]
             if any(values[column])
         ]
-        if passed or telling not in columns:
+        if passed or telling not in columns or telling == features[0].name_column:
             why = "no column is known to hold names"
             if passed:
                 why = f"column {_heading(features, passed[0])!r} does not tell them apart"
@@ -137,9 +156,9 @@ def _tells_apart(values: Sequence[str]) -> bool:
 
 def _other_columns(features: Sequence[Feature], columns: Sequence[str]) -> Iterator[str]:
     """Columns of any other name that tell the features apart: short texts, then numbers under a heading for codes."""
-    left_out = {*columns, *map(normal_name, (*ROLE_COLUMNS, *_PROGRAM_COLUMNS)), "services", "samplingpoint"}
+    left_out = {*columns, *_NO_NAME_COLUMNS}
     codes: list[str] = []
-    for key in dict.fromkeys(key for feature in features for key in feature.properties):
+    for key in dict.fromkeys(key for feature in features for key in feature.properties if not key.startswith("@")):
         values = [feature.properties.get(key) for feature in features]
         is_short = all(
             isinstance(value, str | int) and not is_blank(value) and len(str(value)) <= MAX_ID_LETTERS
@@ -149,9 +168,26 @@ def _other_columns(features: Sequence[Feature], columns: Sequence[str]) -> Itera
             continue
         if all(isinstance(value, str) and any(letter.isalpha() for letter in value) for value in values):
             yield normal_name(key)
-        elif _CODE_WORDS.intersection(heading_words(key)):
+        elif _is_code_heading(key) and not any(map(_is_decimal, values)):
             codes.append(normal_name(key))
     yield from codes
+
+
+def _is_code_heading(heading: str) -> bool:
+    """Whether a heading says by its last word that it holds codes, as ``Site Code``, or codes of ponds: ``nº estanque``.
+
+    "Unit area", "point depth" and "number of fish" are measured, not called.
+    """
+    words = heading_words(heading)
+    if not words or english_words("before_places").intersection(words):
+        return False
+    is_of_pond = words[0] in _CODE_WORDS and is_plain_word(words[-1]) and not words[-1].endswith("s")
+    return words[-1] in _CODE_WORDS or is_of_pond
+
+
+def _is_decimal(value: object) -> bool:
+    number = plain_number(text_of(value))
+    return number is not None and not number.is_integer()
 
 
 def _number_unnamed(drafts: Sequence[Draft], source: Source) -> None:

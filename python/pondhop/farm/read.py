@@ -148,7 +148,7 @@ def _sorted(source: Source) -> Sorted:
     if not source.features and not source.faults:
         action = "export the layer that holds the ponds"
         source.faults.append(Fault("file", "there is no feature in this file", action))
-    adopt_names(source.features, source)
+    adopt_names(source.features)
     wrap_longitudes(source.features, source.notes)
     misplaced = check_coordinates(source.features)
     source.faults.extend(misplaced)
