@@ -219,6 +219,17 @@ def test_ponds_that_only_lie_near_the_meridian_stay_apart(tmp_path: Path) -> Non
     ]
 
 
+def test_the_note_of_parts_put_together_counts_them_right(tmp_path: Path) -> None:
+    first = [[box(179.999, -17.001, 180, -17.0)], [box(-180, -17.001, -179.999, -17.0)]]
+    second = [[box(179.999, -17.004, 180, -17.003)], [box(-180, -17.004, -179.999, -17.003)]]
+    apart = [[box(179.99, -17.004, 179.991, -17.003)]]
+    for parts, counts in (([*first, *second], (4, 2)), ([*first, *second, *apart], (5, 3)), ([*first, *apart], (3, 2))):
+        farm = read_farm(geojson(tmp_path, shape("MultiPolygon", parts, name="A")), depot=(179.998, -17.0))
+        assert len(farm.ponds) == counts[1]
+        sentence = "of its {} parts, those that meet on the 180th meridian were put together, to {}.".format(*counts)
+        assert told(farm, sentence)
+
+
 def test_areas_and_lines_cut_at_the_meridian_are_one(tmp_path: Path) -> None:
     pond = shape("Point", [-179.9998, -17.0005], id="P")
     fence = [[box(179.99, -17.01, 180, -16.99)], [box(-180, -17.01, -179.99, -16.99)]]

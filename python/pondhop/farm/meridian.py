@@ -23,12 +23,14 @@ def join_at_meridian(features: Iterable[Feature], notes: Notes) -> None:
         num_parts = len(geometry.polygons) + len(geometry.lines)
         geometry.polygons = _joined_polygons(geometry.polygons)
         geometry.lines = _joined_lines(geometry.lines)
-        num_joined = num_parts - len(geometry.polygons) - len(geometry.lines)
-        if num_joined:
-            notes.add(
-                f"{feature.told()}: {num_joined + 1} parts that meet on the 180th meridian were put together.",
-                kind="parts at the meridian",
-            )
+        num_left = len(geometry.polygons) + len(geometry.lines)
+        if num_left < num_parts:
+            told = f"{num_parts} parts that meet on the 180th meridian were put together"
+            if num_left > 1:
+                told = (
+                    f"of its {num_parts} parts, those that meet on the 180th meridian were put together, to {num_left}"
+                )
+            notes.add(f"{feature.told()}: {told}.", kind="parts at the meridian")
 
 
 def _lies_on_both_sides(geometry: Geometry) -> bool:

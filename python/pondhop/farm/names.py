@@ -174,7 +174,7 @@ def _other_columns(features: Sequence[Feature], columns: Sequence[str]) -> Itera
 
 
 def _is_code_heading(heading: str) -> bool:
-    """Whether a heading says by its last word that it holds codes, as ``Site Code``, or codes of ponds: ``nº estanque``.
+    """Whether a heading says that it holds codes: by its last word, as ``Site Code``, or of ponds, as ``nº estanque``.
 
     "Unit area", "point depth" and "number of fish" are measured, not called.
     """
