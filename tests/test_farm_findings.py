@@ -345,6 +345,18 @@ def test_places_are_together_by_their_distance_on_the_ground(lon: float, lat: fl
     assert places_together([(105.7, 10.1), (lon, lat), away(1.01), away(0.99)], 1.0) == [(1, 3)]
 
 
+@pytest.mark.parametrize(("west_m", "is_doubt"), [(4.9, False), (5.2, True), (44.4, True)])
+def test_a_sampling_point_outside_its_own_pond_is_a_doubt(tmp_path: Path, west_m: float, is_doubt: bool) -> None:
+    lon = 105.7 - west_m / METRES_PER_DEGREE / cos(radians(10.1))
+    pond = polygon(0, 0, name="P", sampling_point=[lon, 10.1002])
+    path = geojson(tmp_path, pond, polygon(2, 0, name="Q", sampling_point=[105.705, 10.1002]))
+    farm = read_farm(path, depot=DEPOT)
+    assert told(farm, f"1 sampling point lies outside the outline of its pond, by {west_m} m (features[0])")
+    message = f"features[0]: the sampling point of pond P lies {west_m:.0f} m outside it"
+    assert [(doubt.pond_id, doubt.message) for doubt in farm.doubts] == [("P", message)] * is_doubt
+    assert read_farm(path, depot=DEPOT, accept=["P"]).doubts == ()
+
+
 # --------------------------------------------------------------------------------------- what is left out by its kind
 
 

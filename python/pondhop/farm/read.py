@@ -36,6 +36,9 @@ MIN_WIDTH_M = 2.0
 MAX_NARROW_M = 10.0
 """An outline whose area is larger than its diagonal times this has room enough, and is not measured."""
 
+MAX_SHORE_M = 5.0
+"""Further outside an outline than positions are drawn wrong, a sampling point is not in the water at its shore."""
+
 SAME_PLACE_M = 1.0
 """Two ponds have room for nothing if their points lie nearer than this."""
 
@@ -203,22 +206,10 @@ def _tell_misnamed(feature: Feature, role: str, inside: float, source: Source) -
 
 
 def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
-    """What makes the place of a pond a guess: corners placed or joined while reading, and ponds that lie in ponds."""
+    """What makes the place of a pond a guess: corners placed or joined while reading, and sampling points elsewhere."""
     doubts = [Doubt(draft.id, f"{draft.feature.place}: {told}") for draft in drafts for told in draft.feature.doubts]
     doubts.extend(_narrow(drafts, source))
-    offsets = [
-        (-shapes.clearance_m(draft.sampling_point, draft.outline), draft.feature.place)
-        for draft in drafts
-        if draft.outline and draft.feature.find("sampling_point")
-    ]
-    outside = [offset for offset in offsets if offset[0] > 0.0]
-    if outside:
-        offset_m, place = max(outside)
-        lie = "sampling point lies" if len(outside) == 1 else "sampling points lie"
-        whose, furthest = ("its pond", "") if len(outside) == 1 else ("their pond", "the furthest ")
-        source.notes.add(
-            f"{len(outside)} {lie} outside the outline of {whose}, {furthest}by {offset_m:.1f} m ({place})."
-        )
+    doubts.extend(_outside(drafts, source))
     points, outlines = [draft.sampling_point for draft in drafts], [draft.outline for draft in drafts]
     for inner, outer in shapes.places_inside(points, outlines):
         if inner == outer:
@@ -231,6 +222,30 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
         doubts.append(Doubt(drafts[inner].id, f"{drafts[inner].feature.place}: {told}"))
     doubts.extend(_at_one_place(drafts, source))
     return doubts
+
+
+def _outside(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
+    """Ponds whose sampling point the file puts outside their own outline: noted on the shore, in doubt further away."""
+    offsets = [
+        (-shapes.clearance_m(draft.sampling_point, draft.outline), draft)
+        for draft in drafts
+        if draft.outline and draft.feature.find("sampling_point")
+    ]
+    outside = [(offset_m, draft) for offset_m, draft in offsets if offset_m > 0.0]
+    if outside:
+        offset_m, furthest = max(outside, key=lambda item: item[0])
+        lie = "sampling point lies" if len(outside) == 1 else "sampling points lie"
+        whose, by = ("its pond", "by") if len(outside) == 1 else ("their pond", "the furthest by")
+        source.notes.add(
+            f"{len(outside)} {lie} outside the outline of {whose}, {by} {offset_m:.1f} m ({furthest.feature.place})."
+        )
+    return [
+        Doubt(
+            draft.id, f"{draft.feature.place}: the sampling point of pond {draft.id} lies {offset_m:.0f} m outside it"
+        )
+        for offset_m, draft in outside
+        if offset_m > MAX_SHORE_M
+    ]
 
 
 def _at_one_place(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
