@@ -714,6 +714,75 @@ def test_a_column_that_is_called_like_a_tag_says_nothing(tmp_path: Path) -> None
     assert len(read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, power="3 kW")), depot=DEPOT).ponds) == 4
 
 
+# ------------------------------------------------------------------------------------------------- remarks on ponds
+
+KEPT_OUT = (
+    "no fly zone, military",
+    "No-Fly Zone",
+    "Military no fly zone around the radar",
+    "Pond 4; do not fly",
+    "no fly: yes",
+    "NFZ",
+    "Restricted",
+    "zona de exclusión aérea",
+    "Vùng cấm bay",
+    "禁飞区",
+    "<table><tr><td>no fly zone</td></tr><tr><td>of the airport</td></tr></table>",
+)
+
+
+@pytest.mark.parametrize("remark", KEPT_OUT)
+@pytest.mark.parametrize("column", ["description", "Status", "备注"])
+def test_a_remark_that_keeps_drones_out_is_asked_for(tmp_path: Path, remark: str, column: str) -> None:
+    for name in ("M4", "Pond 4"):
+        path = geojson(tmp_path, *ponds(), polygon(5, 5, name=name, **{column: remark}))
+        [(place, message, action)] = faults_of(path, depot=DEPOT)
+        assert (place, f"is this a pond? its {column} is " in message, "no_fly" in action) == (
+            "features[3]",
+            True,
+            True,
+        )
+    zone = read_farm(
+        geojson(tmp_path, *ponds(), polygon(5, 5, name="M4", role="pond", **{column: remark})), depot=DEPOT
+    )
+    assert ids(zone) == [*PONDS[:3], "M4"]
+    office = polygon(5, 5, name="Office", **{column: remark})
+    assert ids(read_farm(geojson(tmp_path, *ponds(), office), depot=DEPOT)) == PONDS[:3]
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        "Pond 4, no-fly zone to the north",
+        "near the no fly zone",
+        "no fly zone 200 m east",
+        "not in a no-fly zone",
+        "No fly zone: none",
+        "no fly: no",
+        "restricted feeding",
+        "avoid noon",
+        "airport road",
+        "drone could not fly on Monday",
+        "danger of birds",
+        "cerca de la zona de exclusión aérea",
+        "北侧为禁飞区",
+        "<tr><td>no fly</td><td>no</td></tr>",
+    ],
+)
+def test_a_remark_on_another_place_is_no_reason_to_ask(tmp_path: Path, remark: str) -> None:
+    farm = read_farm(geojson(tmp_path, *ponds(), polygon(5, 5, name="Pond 4", description=remark)), depot=DEPOT)
+    assert (ids(farm), farm.doubts) == (PONDS[:4], ())
+
+
+def test_descriptions_of_placemarks_are_remarks(tmp_path: Path) -> None:
+    body = f"<description><![CDATA[No fly zone<br>since 2020]]></description>{kml_polygon(5, 0)}"
+    [(place, message, _)] = faults_of(kml(tmp_path, pond_mark(1), placemark("M4", body)), depot=DEPOT)
+    assert (place, "its description is 'No fly zone since 2020'" in message) == ("placemark 2", True)
+    point = '<wpt lat="10.1" lon="105.7"><name>A</name></wpt><wpt lat="10.101" lon="105.7"><desc>no fly</desc></wpt>'
+    (tmp_path / "farm.gpx").write_text(f"<gpx>{point}</gpx>", "utf-8")
+    assert "its desc is 'no fly'" in faults_of(tmp_path / "farm.gpx", depot=DEPOT)[0][1]
+
+
 # ------------------------------------------------------------------------------------------------------- workbooks
 
 Rows = list[list[object]]

@@ -75,6 +75,9 @@ def _read_placemark(place: str, element: Element, around: _Around, source: Sourc
     own_name = text_in(element, "name")
     if own_name:
         properties = {"name": own_name, **{key: value for key, value in properties.items() if key.lower() != "name"}}
+    description = text_in(element, "description")
+    if description:
+        properties.setdefault("description", description)
     geometry = Geometry()
     num_faults = len(source.faults)
     for child in element:

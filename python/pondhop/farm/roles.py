@@ -7,6 +7,7 @@ In doubt a feature is a fault that names it: a pond too few is told, a building 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -25,7 +26,15 @@ from pondhop.farm.features import (
 )
 from pondhop.farm.shapes import closed_line
 from pondhop.farm.vocabulary import column_words, pond_like_words, tag_meanings, tags_of_anything_else
-from pondhop.farm.words import Meaning, is_unnamed, meanings, series_of, thing_named_for_pond, word_for
+from pondhop.farm.words import (
+    Meaning,
+    is_unnamed,
+    keeps_drones_out,
+    meanings,
+    series_of,
+    thing_named_for_pond,
+    word_for,
+)
 from pondhop.units import counted
 
 ROLES = ("pond", "depot", "station", "no_fly", "fence", "other")
@@ -36,6 +45,7 @@ POND_COLUMNS = frozenset(map(normal_name, column_words("ponds")))
 
 ROLE_COLUMNS = column_words("roles")
 KIND_COLUMNS = column_words("kinds")
+REMARK_COLUMNS = column_words("remarks")
 _DECLARING_COLUMNS = ("service_s", "sampling_point", "pond_id", "pond", "pond_name", "pond_no", "pond_number")
 
 OSM_KEYS = tuple(dict.fromkeys((*tags_of_anything_else(), *(key for key, _ in tag_meanings()))))
@@ -127,7 +137,8 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     has_layers = len({feature.folders for feature in source.features}) > 1
     verdicts = [(feature, _verdict(feature, has_layers, source)) for feature in features]
     judged = [(feature, verdict) for feature, verdict in verdicts if verdict is not None]
-    for feature, verdict in _with_series(judged, source):
+    for feature, by_name in _with_series(judged, source):
+        verdict = _with_remarks(feature, by_name)
         if verdict.is_doubtful or (verdict.meaning is Meaning.UNCERTAIN and not _is_declared(feature)):
             doubtful.append((feature, verdict.because))
             continue
@@ -220,6 +231,24 @@ def _is_surely_pond(feature: Feature, verdict: Verdict) -> bool:
     """Whether something that may be a pond is one beyond doubt, or is drawn as only ponds are."""
     is_named = verdict.meaning is Meaning.POND or Meaning.SAMPLING in meanings(feature.name)
     return is_named or _is_closed(feature) or _is_declared(feature)
+
+
+def _with_remarks(feature: Feature, verdict: Verdict) -> Verdict:
+    """What a feature is, in doubt where it may be a pond and a remark on it says that nobody flies there."""
+    if verdict.is_explicit or not _may_be_pond(verdict):
+        return verdict
+    for key in present_columns(tuple(feature.properties), REMARK_COLUMNS):
+        value = feature.properties[key]
+        remark = _without_tags(value) if isinstance(value, str) else ""
+        if keeps_drones_out(remark):
+            return Verdict(None, f"its {key} is {shortened(clean_text(remark), 60)!r}", is_doubtful=True)
+    return verdict
+
+
+def _without_tags(text: str) -> str:
+    """A remark without the HTML in which map programs wrap it; what stands in lines of its own stays apart."""
+    lines = re.sub(r"<\s*/?\s*(?:br|p|tr|div|li|table|h\d)\b[^>]*>", "\n", text, flags=re.IGNORECASE)
+    return re.sub(r"<[^>]*>", " ", lines).strip()
 
 
 def _may_be_pond(verdict: Verdict) -> bool:

@@ -63,6 +63,12 @@ def english_words(kind: str) -> frozenset[str]:
 
 
 @cache
+def remark_words(kind: str) -> tuple[str, ...]:
+    """Phrases of remarks that keep drones out, or those that say that another place is meant."""
+    return _parted(_tables()["remarks"][kind])
+
+
+@cache
 def pond_like_words() -> frozenset[str]:
     """Words in names of ponds that are no words for ponds."""
     return frozenset(word.casefold() for word in _parted(_tables()["pond_like"]["words"]))

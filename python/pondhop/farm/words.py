@@ -13,7 +13,7 @@ import unicodedata
 from enum import Enum
 from functools import cache, lru_cache
 
-from pondhop.farm.vocabulary import english_words, meaning_words, pond_like_words
+from pondhop.farm.vocabulary import english_words, meaning_words, pond_like_words, remark_words
 
 
 class Meaning(Enum):
@@ -40,6 +40,7 @@ class Meaning(Enum):
     """What a program calls things that nobody named."""
 
 
+_CLAUSE_ENDS = re.compile(r"[,;.!?/|()\[\]\n\uff0c\uff1b\u3002\u3001\uff01]|\s[-\u2013\u2014]\s")
 _LETTER_RUN = re.compile(r"[^\W\d_]+")
 _SPACED_SCRIPTS = ("LATIN", "GREEK", "CYRILLIC")
 
@@ -177,6 +178,48 @@ def series_of(text: str) -> tuple[str, tuple[str, ...]] | None:
     words = [word for word, said in found if Meaning.SERIES in said]
     is_all = all({Meaning.SERIES, Meaning.SAMPLING} & said for _, said in found)
     return (_stem(words[0]), rest) if words and is_all else None
+
+
+@lru_cache(maxsize=65_536)
+def keeps_drones_out(remark: str) -> bool:
+    """Whether a clause of a remark says of the thing itself that nobody flies there.
+
+    "No-fly zone, military" does; "no-fly zone to the north" is said of another place.
+    """
+    return any(map(_is_no_fly_clause, _CLAUSE_ENDS.split(remark)))
+
+
+def _is_no_fly_clause(clause: str) -> bool:
+    words = _words(clause)
+    plain = unicodedata.normalize("NFKC", clause).casefold().strip()
+    found, rest = _told(clause)
+    if found and not rest and all(said == {Meaning.NO_FLY} for _, said in found):
+        return True
+    phrases, elsewhere = _remark_phrases()
+    for phrase in phrases:
+        if not isinstance(phrase, str):
+            ends = range(len(phrase), len(words) + 1)
+            at = next((end - len(phrase) for end in ends if tuple(words[end - len(phrase) : end]) == phrase), None)
+            if at is not None:
+                return not elsewhere.intersection([*words[:at], *words[at + len(phrase) :]])
+        elif phrase in plain:
+            rest_of_it = plain.replace(phrase, " ")
+            return not any(word in rest_of_it for word in elsewhere if not all(map(_is_spaced, word)))
+    return False
+
+
+@cache
+def _remark_phrases() -> tuple[list[tuple[str, ...] | str], frozenset[str]]:
+    """Phrases that keep drones out, as words or as runs of signs, the longest first; and words for other places."""
+
+    def compared(phrase: str) -> tuple[str, ...] | str:
+        is_spaced = all(_is_spaced(letter) for letter in phrase if letter.isalpha())
+        return tuple(_words(phrase)) if is_spaced else unicodedata.normalize("NFKC", phrase).casefold()
+
+    elsewhere = frozenset(
+        word if isinstance(word, str) else word[0] for word in map(compared, remark_words("elsewhere"))
+    )
+    return sorted(map(compared, remark_words("no_fly")), key=len, reverse=True), elsewhere
 
 
 def _stands_in(phrase: str, meaning: Meaning, text: str) -> bool:
