@@ -489,6 +489,48 @@ def test_hidden_areas_keep_drones_out_and_hidden_depots_give_way(tmp_path: Path)
     assert alone.depot == (105.695, 10.0995)
 
 
+# ------------------------------------------------------------------------------- degrees and minutes in one number
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("pond,lat,lon\nA,1006.060 N,10542.000 E\nB,N1006.6,E10542.6\n", (105.7, 10.101)),
+        ("pond,lat,NS,lon,EW\nA,1006.060,N,10542.000,E\nB,1006.600,N,10542.600,E\n", (105.7, 10.101)),
+        ("pond;lat;NS;lon;EW\nA;0218,024;S;07954,054;W\nB;0218,6;S;07954,6;W\n", (-79.9009, -2.3004)),
+        ('pond,coordinates\nA,"1006.060 N, 10542.000 E"\nB,"1006.6 N, 10542.6 E"\n', (105.7, 10.101)),
+        ("pond,Lat (S),Lon (W)\nA,218.024,7954.054\nB,218.6,7954.6\n", (-79.9009, -2.3004)),
+    ],
+)
+def test_joined_degrees_and_minutes_with_letters_are_read(
+    tmp_path: Path, text: str, place: tuple[float, float]
+) -> None:
+    farm = read_farm(table(tmp_path, text), depot=(round(place[0], 1), round(place[1], 1)))
+    assert farm.ponds[0].sampling_point == pytest.approx(place, abs=1e-7)
+    assert told(farm, "read as degrees and minutes in one number, as GPS receivers write them: ")
+
+
+def test_joined_degrees_and_minutes_without_letters_are_a_fault_that_says_so(tmp_path: Path) -> None:
+    text = "pond,lat,lon\nA,1006.060,10542.000\nB,1006.600,10542.600\n"
+    faults = faults_of(table(tmp_path, text), depot=DEPOT)
+    for (place, message, action), line in zip(faults, (2, 3), strict=True):
+        assert place == f"line {line}"
+        assert "look like degrees and minutes in one number: longitude 10542" in message
+        assert "letters N, S, E and W beside the numbers will do" in action
+    assert "latitude 1006.06 is 10 degrees 6.06 minutes" in faults[0][1]
+    point = shape("Point", [-7954.054, -218.024], name="A")
+    assert "longitude -7954.054 is 79 degrees 54.054 minutes" in faults_of(geojson(tmp_path, point), depot=DEPOT)[0][1]
+
+
+@pytest.mark.parametrize(
+    "cells", [("576800,1116600", "576900,1116700"), ("1006,5542", "1306,5842"), ("1006,5560", "1007,5561")]
+)
+def test_metres_are_no_joined_degrees_and_minutes(tmp_path: Path, cells: tuple[str, str]) -> None:
+    rows = "".join(f"{name},{cell}\n" for name, cell in zip("AB", cells, strict=True))
+    faults = faults_of(table(tmp_path, f"pond,lon,lat\n{rows}"), depot=DEPOT)
+    assert all("metres of a map projection" in message for _, message, _ in faults)
+
+
 # ------------------------------------------------------------------------------------------ headings and names of ponds
 
 

@@ -77,6 +77,8 @@ class Columns:
         A column that holds latitude and longitude, as map programs copy them.
     sign_of_o
         What the letter O says about a longitude.
+    has_joined_minutes
+        Whether degrees and minutes are one number, as GPS receivers write them.
     """
 
     names: tuple[str, ...]
@@ -89,6 +91,7 @@ class Columns:
     zone_side: int | None = None
     pair: int | None = None
     sign_of_o: int = -1
+    has_joined_minutes: bool = False
 
     def used(self) -> set[int]:
         """Indices of the columns that tell where a pond is."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from pondhop.errors import Fault
 from pondhop.farm.features import Feature, Geometry, Notes, Positions, listed
+from pondhop.farm.joined_minutes import are_minutes_joined, joined_text
 from pondhop.places import LonLat, wrapped_longitude
 
 MAX_LATITUDE_DEG = 75.0
@@ -52,13 +53,13 @@ def check_coordinates(features: Sequence[Feature]) -> list[Fault]:
     Longitude and latitude exchanged throughout the file are one fault.
     """
     faults: list[Fault] = []
-    num_exchanged = num_located = 0
-    for feature in features:
-        positions = feature.geometry.positions()
-        if not positions:
-            continue
-        num_located += 1
-        if _lies_within(positions):
+    num_exchanged = 0
+    located = [(feature, positions) for feature in features if (positions := feature.geometry.positions())]
+    astray = [(feature, positions) for feature, positions in located if not _lies_within(positions)]
+    is_joined = are_minutes_joined([position for _, positions in astray for position in positions])
+    for feature, positions in astray:
+        if is_joined:
+            faults.append(_joined_fault(feature.place, *positions[0]))
             continue
         if all(map(exchanged, positions)):
             num_exchanged += 1
@@ -76,8 +77,8 @@ def check_coordinates(features: Sequence[Feature]) -> list[Fault]:
             if fault is not None:
                 faults.append(fault)
                 break
-    if num_located > 1 and num_exchanged == num_located:
-        return [Fault(f"all {num_located} features", faults[0].message, faults[0].action)]
+    if len(located) > 1 and num_exchanged == len(located):
+        return [Fault(f"all {len(located)} features", faults[0].message, faults[0].action)]
     return faults
 
 
@@ -86,6 +87,15 @@ def _lies_within(positions: Positions) -> bool:
     lons, lats = zip(*positions, strict=True)
     extremes = (min(lons), max(lons), min(lats), max(lats))
     return bool(max(map(abs, extremes[:2])) <= 180.0 and max(map(abs, extremes[2:])) <= MAX_LATITUDE_DEG)
+
+
+def _joined_fault(place: str, lon: float, lat: float) -> Fault:
+    told = f"longitude {joined_text(lon)}, latitude {joined_text(lat)}"
+    action = (
+        "write degrees and minutes apart, as in 10 06.06; in a table, letters N, S, E and W beside the numbers will do"
+    )
+    message = f"{lon:.10g}, {lat:.10g} are no degrees; they look like degrees and minutes in one number: {told}"
+    return Fault(place, message, f"{action}; if they are metres, export the file in WGS84 (EPSG:4326)")
 
 
 def _coordinate_fault(place: str, lon: float, lat: float) -> Fault | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Literal
 
@@ -62,6 +63,30 @@ def metres(text: str) -> float | None:
     elif re.fullmatch(r"[+-]?\d{1,3}(?:(?:\.\d{3}){2,}(?:,\d+)?|\.\d{3},\d+)", plain):
         plain = plain.replace(".", "").replace(",", ".")
     return plain_number(plain)
+
+
+def parted_degrees(number: float) -> float | None:
+    """Degrees of what GPS receivers write as one number: 1006.06 is 10 degrees and 6.06 minutes (NMEA 0183).
+
+    Returns ``None`` where the minutes would be 60 or more.
+    """
+    degrees, minutes = divmod(abs(number), 100.0)
+    return math.copysign(degrees + minutes / 60.0, number) if minutes < 60.0 else None
+
+
+def parse_joined(text: str, axis: Axis, sign_of_o: int = -1) -> float | None:
+    """Degrees of a cell that holds degrees and minutes as one number, with or without its letter: ``10542.000 E``."""
+    number, side = joined_number(text), side_written(text)
+    degrees = None if number is None else parted_degrees(number)
+    if degrees is None or side is None:
+        return degrees
+    return (side[1] or sign_of_o) * degrees if side[0] == axis and degrees >= 0.0 else None
+
+
+def joined_number(text: str) -> float | None:
+    """The number of a cell, without the letter of its hemisphere."""
+    match = _SIGNED.fullmatch(text.strip().translate(_SIGNS))
+    return plain_number((match["sign"] or "") + match["angle"]) if match else None
 
 
 def hemisphere(text: str) -> tuple[Axis, int] | None:

@@ -15,8 +15,9 @@ from dataclasses import replace
 from pondhop.errors import Fault
 from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
-from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees
+from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees, parse_joined
 from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank, listed, normal_name, shortened
+from pondhop.farm.joined_minutes import table_has_joined_minutes
 from pondhop.farm.letter_o import sign_of_o
 from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
@@ -145,6 +146,7 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> bool:
     columns = replace(columns, sign_of_o=sign_of_o(columns, below, word, source))
     if not columns.sign_of_o:
         return True
+    columns = replace(columns, has_joined_minutes=table_has_joined_minutes(columns, below, source.notes))
     features: list[Feature] = []
     zones: dict[str | int, list[Feature]] = {}
     has_bands = any(
@@ -171,6 +173,12 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> bool:
             source.open_zones.append(OpenZone(zone, told, [feature for feature in joined if feature.place in places]))
     source.features.extend(joined)
     return True
+
+
+def _degrees(cell: str, axis: Axis, columns: Columns) -> float | None:
+    """The degrees of a cell, in the form of its table."""
+    parse = parse_joined if columns.has_joined_minutes else parse_degrees
+    return parse(cell, axis, columns.sign_of_o)
 
 
 def _zone(
@@ -224,7 +232,7 @@ def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) 
             if len(parts) != 2:
                 source.faults.append(Fault(column, "the cell holds no pair of numbers", "write latitude, longitude"))
                 return None
-            lat, lon = parse_degrees(parts[0], "lat"), parse_degrees(parts[1], "lon", columns.sign_of_o)
+            lat, lon = _degrees(parts[0], "lat", columns), _degrees(parts[1], "lon", columns)
             if lat is None or lon is None:
                 shown = shortened(cells[columns.pair].strip())
                 source.faults.append(Fault(column, f"{shown!r} is no number", "write latitude, longitude in degrees"))
@@ -258,7 +266,7 @@ def _number(
     if is_blank(cell):
         source.faults.append(Fault(place, "the cell is empty", "fill in decimal degrees, or delete the line"))
         return None
-    number = metres(cell) if columns.zone is not None else parse_degrees(cell, axis, columns.sign_of_o)
+    number = metres(cell) if columns.zone is not None else _degrees(cell, axis, columns)
     if number is None:
         action = "write metres, as in 576800" if columns.zone is not None else "write decimal degrees, as in -89.17"
         source.faults.append(Fault(place, f"{shortened(cell.strip())!r} is no number", action))
