@@ -415,6 +415,33 @@ def test_plurals_are_right(tmp_path: Path) -> None:
     assert told(read_farm(table(tmp_path, corners), depot=DEPOT), "3 lines were joined to 1 outline, a corner a line")
 
 
+def test_a_note_tells_by_what_a_thing_was_left_out(tmp_path: Path) -> None:
+    inside = [
+        f"<Folder><name>{name}</name>{marks}</Folder>"
+        for name, marks in (
+            ("Ponds", pond_mark(1)),
+            ("Houses", placemark("C", kml_polygon(3, 0)) + placemark("D", kml_polygon(4, 0))),
+            ("Farm boundary", placemark("E", kml_polygon(5, 0))),
+        )
+    ]
+    farm = read_farm(kml(tmp_path, *inside), depot=DEPOT)
+    assert told(farm, "because they lie in 'Houses', so they are no ponds: 'C' (placemark 2), 'D' (placemark 3)")
+    assert told(farm, "because it lies in 'Farm boundary', so it bounds land, not water: 'E' (placemark 4). To keep")
+    things = [
+        polygon(5, 5, name="C", building="yes"),
+        polygon(6, 5, name="D", type="house"),
+        polygon(7, 5, name="Gate"),
+    ]
+    notes = read_farm(geojson(tmp_path, *ponds(), *things), depot=DEPOT).notes
+    assert notes == (
+        "Left out, because it has building=yes, so it is no pond: 'C' (features[3]).",
+        "Left out, because its type is 'house', so it is no pond: 'D' (features[4]).",
+        "Left out, because it is no pond by its name: 'Gate' (features[5]).",
+    )
+    buildings = [polygon(n, 5, name=f"{n}", building="yes") for n in range(5)]
+    assert ids(read_farm(geojson(tmp_path, *ponds(), *buildings), depot=DEPOT)) == PONDS[:3]
+
+
 # ------------------------------------------------------------------------------------------ hidden in the map program
 
 HIDDEN = "<visibility>0</visibility>"

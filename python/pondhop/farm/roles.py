@@ -132,7 +132,7 @@ class Verdict:
 def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     """Sort features by what they are; what is none of a farm's things is left out with one note for each reason."""
     told = Sorted()
-    left_out: dict[Meaning, list[Feature]] = {Meaning.OTHER: [], Meaning.BOUNDARY: []}
+    left_out: dict[Meaning, list[tuple[Feature, Verdict]]] = {Meaning.OTHER: [], Meaning.BOUNDARY: []}
     doubtful: list[tuple[Feature, str]] = []
     has_layers = len({feature.folders for feature in source.features}) > 1
     verdicts = [(feature, _verdict(feature, has_layers, source)) for feature in features]
@@ -303,14 +303,18 @@ def _told_with_id(feature: Feature) -> str:
 
 
 def _file(
-    feature: Feature, verdict: Verdict, told: Sorted, left_out: dict[Meaning, list[Feature]], source: Source
+    feature: Feature,
+    verdict: Verdict,
+    told: Sorted,
+    left_out: dict[Meaning, list[tuple[Feature, Verdict]]],
+    source: Source,
 ) -> None:
     meaning = verdict.meaning
     if not _may_be_pond(verdict):
         told.others.append((feature, verdict))
     if meaning in {Meaning.OTHER, Meaning.BOUNDARY}:
         if not verdict.is_explicit:
-            left_out[meaning].append(feature)
+            left_out[meaning].append((feature, verdict))
         return
     lists = {
         Meaning.DEPOT: told.depots,
@@ -320,10 +324,10 @@ def _file(
         Meaning.FENCE: told.fences,
     }
     if meaning is Meaning.START and (feature.geometry.polygons or feature.geometry.lines):
-        left_out[Meaning.OTHER].append(feature)
+        left_out[Meaning.OTHER].append((feature, verdict))
         return
     if meaning is Meaning.FENCE and not verdict.is_explicit and not _is_closed(feature):
-        left_out[Meaning.BOUNDARY].append(feature)
+        left_out[Meaning.BOUNDARY].append((feature, verdict))
         return
     if meaning in lists:
         lists[meaning].append(feature)
@@ -340,23 +344,50 @@ def _file(
 
 
 def _tell_left_out(
-    left_out: dict[Meaning, list[Feature]], told: Sorted, doubtful: list[tuple[Feature, str]], source: Source
+    left_out: dict[Meaning, list[tuple[Feature, Verdict]]],
+    told: Sorted,
+    doubtful: list[tuple[Feature, str]],
+    source: Source,
 ) -> None:
-    """Note what was left out; where that would be most of the outlines, the words mean something else here."""
+    """Note what was left out and what says so; where that is most of the outlines, their names mean something else."""
     # Where all ponds are points, outlines are what lies beside them.
     num_outlines = sum(bool(feature.geometry.polygons) for feature in told.ponds) or len(told.ponds)
-    for meaning, features in left_out.items():
-        outlines = [feature for feature in features if feature.geometry.polygons]
+    for meaning, judged in left_out.items():
+        outlines = [
+            feature for feature, verdict in judged if feature.geometry.polygons and feature.name == verdict.text
+        ]
         is_most = 0 < num_outlines < len(outlines) and len(outlines) > 1
+        asked: set[str] = set()
         if is_most and not any(feature.folders for feature in outlines):
-            doubtful.extend((feature, f"it is called {feature.name!r}") for feature in outlines if feature.name)
-            features = [feature for feature in features if not feature.geometry.polygons or not feature.name]
-        if features:
-            what = "they are no ponds by their names" if meaning is Meaning.OTHER else "they bound land, not water"
-            if len(features) == 1:
-                what = "it is no pond by its name" if meaning is Meaning.OTHER else "it bounds land, not water"
-            hint = "" if meaning is Meaning.OTHER else " To keep the drones inside, give it the role fence."
-            source.notes.add(f"{left_out_note(what, features)}{hint}")
+            doubtful.extend((feature, f"it is called {feature.name!r}") for feature in outlines)
+            asked = {feature.place for feature in outlines}
+        groups: dict[str, list[Feature]] = {}
+        for feature, verdict in judged:
+            if feature.place not in asked:
+                because = "" if feature.name == verdict.text else verdict.because
+                groups.setdefault(because, []).append(feature)
+        hint = "" if meaning is Meaning.OTHER else " To keep the drones inside, give it the role fence."
+        for because, features in groups.items():
+            why = _why_left_out(meaning, because, is_one=len(features) == 1)
+            source.notes.add(
+                f"{left_out_note(why, features)}{hint}", kind=f"left out as {meaning}" if because else None
+            )
+
+
+def _why_left_out(meaning: Meaning, because: str, *, is_one: bool) -> str:
+    """Why things were left out: by their names, or by what else says so, as in ``it lies in 'Houses'``."""
+    if meaning is Meaning.OTHER:
+        what = "it is no pond" if is_one else "they are no ponds"
+        by_name = " by its name" if is_one else " by their names"
+    else:
+        what, by_name = ("it bounds land, not water" if is_one else "they bound land, not water"), ""
+    if not because:
+        return f"{what}{by_name}"
+    if not is_one:
+        for one, many in (("it lies in ", "they lie in "), ("it has ", "they have "), ("its ", "their ")):
+            if because.startswith(one):
+                because = f"{many}{because.removeprefix(one)}"
+    return f"{because}, so {what}"
 
 
 def _is_declared(feature: Feature) -> bool:
