@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import cos, radians
 from pathlib import Path
+from unicodedata import lookup
 
 import pytest
 
@@ -514,6 +515,53 @@ def test_hidden_areas_keep_drones_out_and_hidden_depots_give_way(tmp_path: Path)
     assert told(farm, "another depot is the one that can be seen in the map program: 'Depot' (placemark 3).")
     alone = read_farm(kml(tmp_path, pond_mark(1), depots[0]))
     assert alone.depot == (105.695, 10.0995)
+
+
+# -------------------------------------------------------------------------------------- numbers as they are written
+
+
+@pytest.mark.parametrize(
+    ("cell", "wrong"),
+    [
+        ("10 66 01", "'10 66 01' has 66 minutes, and each must be under 60"),
+        ("10°06'61\"N", "has 61 seconds, and each must be under 60"),
+        ("10 66 71 N", "'10 66 71 N' has 66 minutes and 71 seconds, and each must be under 60"),
+        ("ten", "'ten' is no number"),
+    ],
+)
+def test_an_angle_with_too_many_minutes_is_told_as_such(tmp_path: Path, cell: str, wrong: str) -> None:
+    [(place, message, _)] = faults_of(table(tmp_path, f"pond;lat;lon\nA;{cell};105.7\n"), depot=DEPOT)
+    assert (place, wrong in message) == ("line 2, column lat", True)
+    [(_, message, _)] = faults_of(workbook(tmp_path, Ponds=[["pond", "gps"], ["A", f"{cell}, 105.7"]]), depot=DEPOT)
+    assert wrong.partition(" has ")[2] in message
+
+
+SCRIPTS = ("ARABIC-INDIC", "EXTENDED ARABIC-INDIC", "BENGALI", "DEVANAGARI", "FULLWIDTH", "THAI")
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+@pytest.mark.parametrize("separator", [".", ",", "\N{ARABIC DECIMAL SEPARATOR}", "\N{FULLWIDTH FULL STOP}"])
+def test_digits_of_any_script_are_read(tmp_path: Path, script: str, separator: str) -> None:
+    zero = ord(lookup(f"{script} DIGIT ZERO"))
+
+    def written(text: str) -> str:
+        return text.translate({ord("0") + digit: zero + digit for digit in range(10)}).replace(".", separator)
+
+    row = f"A;{written('10.101')};{written('105.7')};{written('30.5')}"
+    [pond] = read_farm(table(tmp_path, f"pond;lat;lon;service_s\n{row}\n"), depot=DEPOT).ponds
+    assert (pond.sampling_point, pond.service_s) == ((105.7, 10.101), 30.5)
+    angle = f"A;{written('10 06 03.6 N')};{written('E 105 42')}"
+    [pond] = read_farm(table(tmp_path, f"pond;lat;lon\n{angle}\n"), depot=DEPOT).ponds
+    assert pond.sampling_point == pytest.approx((105.7, 10.101))
+
+
+def test_a_time_on_station_may_have_a_decimal_comma_but_no_thousands(tmp_path: Path) -> None:
+    def path(service: str) -> Path:
+        return geojson(tmp_path, polygon(0, 0, name="A", service_s=service, sampling_point="105,7005; 10,1002"))
+
+    [pond] = read_farm(path("30,5"), depot=DEPOT).ponds
+    assert (pond.service_s, pond.sampling_point) == (30.5, (105.7005, 10.1002))
+    assert "'1,200' is no time on station" in faults_of(path("1,200"), depot=DEPOT)[0][1]
 
 
 # ------------------------------------------------------------------------------- degrees and minutes in one number

@@ -204,7 +204,7 @@ def _pair_column(plain: Sequence[str], rows: Sequence[Sequence[str]]) -> int | N
 
 def parted_pair(cell: str) -> list[str]:
     """The two coordinates of a cell such as ``10.1004, 105.7009``."""
-    text = cell.strip().strip("()[]")
+    text = cell.strip().strip("()[]").replace("\N{ARABIC COMMA}", ",")
     for separator in (";", ", ", ",", " "):
         parts = [part.strip() for part in text.split(separator) if part.strip()]
         if len(parts) == 2:

@@ -17,8 +17,13 @@ _SIGNS = str.maketrans(
     | dict.fromkeys("\u2018\u2019\u2032\u00b4\u0060", "'")
     | dict.fromkeys("\u201c\u201d\u2033", '"')
     | dict.fromkeys("\u00ba\u02da", "\u00b0")
+    | dict.fromkeys("\u066b\uff0e", ".")
+    | {"\uff0c": ","}
 )
-"""Signs that keyboards and word processors write for minus, plus, degree, minutes and seconds."""
+"""Signs that keyboards and word processors write for minus, plus, degree, minutes, seconds, and the point of a number.
+
+Digits of any script are read as they are.
+"""
 
 _SIDES: dict[str, tuple[Axis, int]] = {
     "north": ("lat", 1),
@@ -89,6 +94,19 @@ def joined_number(text: str) -> float | None:
     return plain_number((match["sign"] or "") + match["angle"]) if match else None
 
 
+def _angle(match: re.Match[str] | None) -> re.Match[str] | None:
+    """Degrees, minutes and seconds of what may be an angle with its letter."""
+    return _ANGLE.fullmatch(re.sub(r"(?<=\d),(?=\d)", ".", match["angle"].strip())) if match else None
+
+
+def angle_fault(text: str) -> str | None:
+    """What is wrong with an angle of which a part is 60 or more, as in ``10 66 01``; ``None`` for anything else."""
+    angle = _angle(_SIGNED.fullmatch(text.strip().translate(_SIGNS)))
+    parts = ((part, float(angle[part] or 0.0)) for part in ("minutes", "seconds")) if angle else ()
+    told = [f"{number:g} {part}" for part, number in parts if number >= 60.0]
+    return f"has {' and '.join(told)}, and each must be under 60" if told else None
+
+
 def hemisphere(text: str) -> tuple[Axis, int] | None:
     """The axis and the sign that a letter or word stands for; the sign of O is 0, because languages differ."""
     return _HEMISPHERES.get(text.strip().strip(".").lower())
@@ -100,6 +118,16 @@ def side_written(text: str) -> tuple[Axis, int] | None:
     return hemisphere((match["before"] or match["after"] or "") if match else text)
 
 
+def number_given(value: object) -> float | None:
+    """The number of a property: as the file has it, or as text with a decimal point or comma.
+
+    ``None`` for what is none, and for text such as ``1,200``, of which nobody knows whether thousands are marked.
+    """
+    if not isinstance(value, str):
+        return number_of(value)
+    return None if re.fullmatch(r"\s*\d{1,3}(?:,\d{3})+\s*", value) else plain_number(value)
+
+
 def parse_degrees(text: str, axis: Axis, sign_of_o: int = -1) -> float | None:
     """Degrees as people write them: ``-89.17``, ``89,17 W``, ``10°06'01.4"N``, ``N 10 06 01.4``, ``10d06m``.
 
@@ -109,10 +137,8 @@ def parse_degrees(text: str, axis: Axis, sign_of_o: int = -1) -> float | None:
     if number is not None:
         return number
     match = _SIGNED.fullmatch(text.strip().translate(_SIGNS))
-    if match is None or (match["before"] and match["after"]):
-        return None
-    angle = _ANGLE.fullmatch(re.sub(r"(?<=\d),(?=\d)", ".", match["angle"].strip()))
-    if angle is None:
+    angle = _angle(match)
+    if match is None or angle is None or (match["before"] and match["after"]):
         return None
     degrees, minutes, seconds = (float(angle[part] or 0.0) for part in ("degrees", "minutes", "seconds"))
     has_fraction = any(

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from pondhop.errors import Fault
 from pondhop.farm import shapes
+from pondhop.farm.columns import parted_pair
 from pondhop.farm.coordinates import MAX_LATITUDE_DEG, exchanged
+from pondhop.farm.degrees import number_given, plain_number
 from pondhop.farm.features import Feature, Source, left_out_note, listed, number_of, shortened
 from pondhop.farm.neighbourhoods import MAX_GAP_M
 from pondhop.farm.roles import ROLE_COLUMNS, Sorted
@@ -376,7 +378,7 @@ def _service_s(feature: Feature, source: Source) -> float | None:
     found = feature.find("service_s")
     if found is None:
         return None
-    number = number_of(found[1])
+    number = number_given(found[1])
     if number is None or not 0.0 <= number <= MAX_SERVICE_S:
         place = feature.property_place.format(found[0])
         message = f"{shortened(str(found[1]))!r} is no time on station"
@@ -390,8 +392,12 @@ def _sampling_point(feature: Feature, source: Source) -> LonLat | None:
         return None
     key, value = found
     # GIS formats have no lists in their tables, so the pair comes as text.
-    parts = value.strip(" []()").replace(";", ",").split(",") if isinstance(value, str) else value
-    numbers = [number_of(part) for part in parts] if isinstance(parts, list) else []
+    parts = parted_pair(value) if isinstance(value, str) else value
+    numbers = (
+        [plain_number(part) if isinstance(part, str) else number_of(part) for part in parts]
+        if isinstance(parts, list)
+        else []
+    )
     place = feature.property_place.format(key)
     if len(numbers) == 2 and numbers[0] is not None and numbers[1] is not None:
         lonlat = (numbers[0], numbers[1])

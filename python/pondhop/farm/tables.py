@@ -15,7 +15,7 @@ from dataclasses import replace
 from pondhop.errors import Fault
 from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
-from pondhop.farm.degrees import Axis, hemisphere, metres, parse_degrees, parse_joined
+from pondhop.farm.degrees import Axis, angle_fault, hemisphere, metres, parse_degrees, parse_joined
 from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank, listed, normal_name, shortened
 from pondhop.farm.joined_minutes import table_has_joined_minutes
 from pondhop.farm.letter_o import sign_of_o
@@ -235,7 +235,8 @@ def _read_row(place: str, row: Sequence[str], columns: Columns, source: Source) 
             lat, lon = _degrees(parts[0], "lat", columns), _degrees(parts[1], "lon", columns)
             if lat is None or lon is None:
                 shown = shortened(cells[columns.pair].strip())
-                source.faults.append(Fault(column, f"{shown!r} is no number", "write latitude, longitude in degrees"))
+                wrong = next(filter(None, map(angle_fault, parts)), "is no number")
+                source.faults.append(Fault(column, f"{shown!r} {wrong}", "write latitude, longitude in degrees"))
                 return None
             geometry.points.append((lon, lat))
         positions = [
@@ -269,7 +270,10 @@ def _number(
     number = metres(cell) if columns.zone is not None else _degrees(cell, axis, columns)
     if number is None:
         action = "write metres, as in 576800" if columns.zone is not None else "write decimal degrees, as in -89.17"
-        source.faults.append(Fault(place, f"{shortened(cell.strip())!r} is no number", action))
+        wrong = None if columns.zone is not None else angle_fault(cell)
+        if wrong is not None:
+            action = "correct the minutes or seconds, or write decimal degrees, as in -89.17"
+        source.faults.append(Fault(place, f"{shortened(cell.strip())!r} {wrong or 'is no number'}", action))
         return None
     sign, told = columns.signs.get(axis, 1) or columns.sign_of_o, "its heading"
     if axis in columns.sides:
