@@ -858,7 +858,7 @@ def test_no_depot_is_proposed_in_a_pond(tmp_path: Path) -> None:
 
 def test_a_depot_in_a_pond_is_noted(tmp_path: Path) -> None:
     [note] = read_farm(geojson(tmp_path, *ponds()), depot=(105.7009, 10.1004)).notes
-    assert note.startswith("The depot lies in pond Pond 1: drones would land in the water")
+    assert note.startswith("The depot lies in Pond 1: drones would land in the water")
 
 
 @pytest.mark.parametrize(

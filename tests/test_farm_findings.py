@@ -26,6 +26,7 @@ from farm_files import (
 )
 from pondhop.farm import Farm, read_farm
 from pondhop.farm.shapes import METRES_PER_DEGREE, area_m2, clearance_m, places_together
+from pondhop.farm.words import pond_called
 from pondhop.places import wrapped_longitude
 
 
@@ -302,7 +303,7 @@ def test_a_pond_in_the_water_of_another_is_a_doubt(tmp_path: Path) -> None:
         inner = pond_of(around(105.7005, 10.1005, 0.0003), name="Pond 2")
         [doubt] = read_farm(geojson(tmp_path, outer, inner), depot=(105.69, 10.0995)).doubts
         assert doubt.pond_id == "Pond 2"
-        assert "the sampling point of pond Pond 2 lies in pond Pond 1" in doubt.message
+        assert "the sampling point of Pond 2 lies in Pond 1" in doubt.message
 
 
 def test_land_with_its_ponds_cut_out_is_no_pond(tmp_path: Path) -> None:
@@ -935,3 +936,10 @@ def test_ponds_of_one_number_on_two_sheets_are_told_apart(tmp_path: Path) -> Non
     south: Rows = [HEADINGS, ["1", 10.111, 105.701], ["2", 10.112, 105.702]]
     farm = read_farm(workbook(tmp_path, North=north, South=south), depot=DEPOT)
     assert ids(farm) == ["North 1", "North 2", "South 1", "South 2"]
+
+
+@pytest.mark.parametrize(
+    ("pond_id", "told"), [("7", "pond 7"), ("A7", "pond A7"), ("Pond 7", "Pond 7"), ("Laguna 2", "Laguna 2")]
+)
+def test_a_pond_is_called_a_pond_once(pond_id: str, told: str) -> None:
+    assert pond_called(pond_id) == told

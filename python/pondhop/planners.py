@@ -23,6 +23,7 @@ from pondhop._core import Problem
 from pondhop.arguments import Arguments, shown
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm
+from pondhop.farm.words import pond_called
 from pondhop.fleet import Fleet
 from pondhop.limits import Proofs
 from pondhop.solution import FarmPlan, FarmViolation, Solution
@@ -469,7 +470,9 @@ def _ponds_beyond_reach(farm: Farm, solution: Solution) -> Iterator[FarmViolatio
     for violation in solution.alone.violations:
         pond = violation.route
         if pond is not None:
-            message = f"pond {farm.ponds[pond].id} is out of reach: alone it breaks {_LIMIT_NAMES[violation.kind]}"
+            message = (
+                f"{pond_called(farm.ponds[pond].id)} is out of reach: alone it breaks {_LIMIT_NAMES[violation.kind]}"
+            )
             remedy = "leave the pond out, move the depot nearer to it, or raise the limit if the drones can do it"
             yield FarmViolation("out_of_reach", message, remedy, None, pond, violation.value, violation.limit)
 

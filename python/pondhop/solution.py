@@ -16,6 +16,7 @@ from pondhop._core import Plan, Problem, Separation, Violation, evaluate
 from pondhop.arguments import Arguments
 from pondhop.farm.features import listed
 from pondhop.farm.model import Farm
+from pondhop.farm.words import pond_called
 from pondhop.fleet import Fleet
 from pondhop.fleet.layers import Layers
 from pondhop.fleet.settings import AIRFRAME_SPEED_M_S
@@ -243,7 +244,7 @@ class FarmPlan:
         """What a violation says of its pond, without the name of it."""
         if violation.pond is None:
             return violation.message
-        return violation.message.replace(f"pond {self.farm.ponds[violation.pond].id} ", "a pond ", 1)
+        return violation.message.replace(f"{pond_called(self.farm.ponds[violation.pond].id)} ", "a pond ", 1)
 
     @property
     def is_feasible(self) -> bool:
@@ -363,7 +364,7 @@ class FarmPlan:
         )
 
     def _in_words(self, violation: Violation, units: Units) -> FarmViolation:
-        pond = None if violation.pond is None else f"pond {self.farm.ponds[violation.pond].id}"
+        pond = None if violation.pond is None else pond_called(self.farm.ponds[violation.pond].id)
         drone = None if violation.route is None else violation.route + 1
         value, limit = violation.value or 0.0, violation.limit or 0.0
         match violation.kind:

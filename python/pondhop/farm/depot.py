@@ -15,6 +15,7 @@ from pondhop.farm.features import Feature, Geometry, Source, left_out_note, numb
 from pondhop.farm.neighbourhoods import middle
 from pondhop.farm.ponds import Draft, areas_of
 from pondhop.farm.roles import Sorted
+from pondhop.farm.words import pond_called
 from pondhop.places import LonLat, distance_m
 
 DRY_M = 3.0
@@ -78,8 +79,8 @@ def tell_depot_in_water(depot: LonLat, drafts: Sequence[Draft], source: Source) 
         if shapes.clearance_m(depot, drafts[index].outline) > 0.0:
             lon, lat = dry_place(depot, drafts)
             source.notes.add(
-                f"The depot lies in pond {drafts[index].id}: drones would land in the water. The nearest dry place is "
-                f"{lon:.6f},{lat:.6f}."
+                f"The depot lies in {pond_called(drafts[index].id)}: drones would land in the water. "
+                f"The nearest dry place is {lon:.6f},{lat:.6f}."
             )
 
 

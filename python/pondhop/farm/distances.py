@@ -9,6 +9,7 @@ from pondhop.farm.depot import away_km, missing_depot
 from pondhop.farm.features import Feature, Source, listed
 from pondhop.farm.neighbourhoods import MAX_GAP_M, middle, neighbourhoods
 from pondhop.farm.ponds import Draft
+from pondhop.farm.words import pond_called
 from pondhop.places import LonLat, distance_m
 
 
@@ -81,7 +82,7 @@ def _far_ponds(group: Sequence[Draft], centre: LonLat) -> list[Fault]:
     return [
         Fault(
             draft.feature.place,
-            f"pond {draft.id!r} lies {_km(centre, draft.sampling_point)} km from the rest of the farm",
+            f"{pond_called(draft.id)} lies {_km(centre, draft.sampling_point)} km from the rest of the farm",
             action,
         )
         for draft in group

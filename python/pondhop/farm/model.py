@@ -13,6 +13,7 @@ from pondhop.arguments import Arguments
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
 from pondhop.farm.shapes import hole_around
+from pondhop.farm.words import pond_called
 from pondhop.fleet import Fleet
 from pondhop.places import Area, LonLat
 
@@ -155,7 +156,7 @@ def _check_service(ponds: Sequence[Pond], fleet: Fleet) -> None:
         # Rounded up, so that whoever gives the number that is told gives enough.
         least = f"{math.ceil(10 * (least_s - _ROUNDING_S)) / 10:g} s"
         values = listed([f"{value:g} s" for value in sorted(set(short.values()))], 3)
-        place = f"{'pond' if len(short) == 1 else 'ponds'} {listed(short)}"
+        place = pond_called(*short) if len(short) == 1 else f"ponds {listed(short)}"
         message = f"service_s is {values}, and {fleet.sampling} takes {least} at least"
         action = f"give {least} or more, from arriving above the pond to leaving from there, or leave service_s out"
         raise InvalidInput([Fault(place, message, action)])

@@ -25,6 +25,7 @@ from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
 from pondhop.farm.roles import Sorted, are_numbered_stations, no_pond_fault, sort_by_role
+from pondhop.farm.words import pond_called
 from pondhop.places import Area, LonLat
 
 ACCEPT_ALL = "all"
@@ -214,7 +215,7 @@ def _doubts(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     for inner, outer in shapes.places_inside(points, outlines):
         if inner == outer:
             continue
-        told = f"the sampling point of pond {drafts[inner].id} lies in pond {drafts[outer].id}"
+        told = f"the sampling point of {pond_called(drafts[inner].id)} lies in {pond_called(drafts[outer].id)}"
         source.notes.add(
             f"{drafts[inner].feature.place}: {told} ({drafts[outer].feature.place}); check both outlines.",
             kind="ponds in ponds",
@@ -241,7 +242,8 @@ def _outside(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
         )
     return [
         Doubt(
-            draft.id, f"{draft.feature.place}: the sampling point of pond {draft.id} lies {offset_m:.0f} m outside it"
+            draft.id,
+            f"{draft.feature.place}: the sampling point of {pond_called(draft.id)} lies {offset_m:.0f} m outside it",
         )
         for offset_m, draft in outside
         if offset_m > MAX_SHORE_M
@@ -254,7 +256,7 @@ def _at_one_place(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
     doubts = []
     for first, second in shapes.places_together([draft.sampling_point for draft in single], SAME_PLACE_M):
         one, other = single[first], single[second]
-        told = f"pond {other.id} lies where pond {one.id} lies ({one.feature.place})"
+        told = f"{pond_called(other.id)} lies where {pond_called(one.id)} lies ({one.feature.place})"
         source.notes.add(f"{other.feature.place}: {told}; correct one of the two.", kind="ponds at one place")
         doubts.append(Doubt(other.id, f"{other.feature.place}: {told}"))
     return doubts
@@ -269,7 +271,7 @@ def _narrow(drafts: Sequence[Draft], source: Source) -> list[Doubt]:
         # The file may have put the sampling point anywhere; how wide the water is asked of the best place.
         width_m = 2.0 * shapes.clearance_m(shapes.point_inside(draft.outline), draft.outline)
         if width_m < MIN_WIDTH_M:
-            told = f"pond {draft.id} is {width_m:.2g} m wide where it is widest, which is no room for a drone"
+            told = f"{pond_called(draft.id)} is {width_m:.2g} m wide where it is widest, which is no room for a drone"
             source.notes.add(f"{draft.feature.place}: {told}; is it a sliver?", kind="narrow ponds")
             doubts.append(Doubt(draft.id, f"{draft.feature.place}: {told}"))
     return doubts

@@ -140,6 +140,11 @@ def meanings(text: str) -> frozenset[Meaning]:
     return frozenset(meaning for _, said in _told(text)[0] for meaning in said)
 
 
+def pond_called(pond_id: str) -> str:
+    """A pond in a sentence: ``pond A7``, but ``Pond 7`` and ``Laguna 2``, whose ids say already what they are."""
+    return pond_id if Meaning.POND in meanings(pond_id) else f"pond {pond_id}"
+
+
 def word_for(text: str, meaning: Meaning) -> str:
     """The word of a name that has a meaning, as it is written there; the whole name if no single word has it."""
     return next((word for word, said in _told(text)[0] if meaning in said), text)

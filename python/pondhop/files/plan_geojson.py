@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pondhop.documents.atomic import write_all
+from pondhop.farm.words import pond_called
 from pondhop.palette import route_colour
 from pondhop.solution import FarmPlan, check_written
 from pondhop.units import JOULES_PER_WATT_HOUR
@@ -66,7 +67,7 @@ def _features(farm_plan: FarmPlan) -> Iterator[dict[str, Any]]:
         for order, pond in enumerate(route):
             properties = {
                 "role": "stop",
-                "title": f"Drone {index + 1}, stop {order + 1}: pond {farm.ponds[pond].id}",
+                "title": f"Drone {index + 1}, stop {order + 1}: {pond_called(farm.ponds[pond].id)}",
                 "drone": index + 1,
                 "order": order + 1,
                 "pond": pond,

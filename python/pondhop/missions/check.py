@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pondhop._core import LocalFrame
 from pondhop.errors import Fault
+from pondhop.farm.words import pond_called
 from pondhop.fleet import MAX_HEIGHT_M
 from pondhop.missions.autopilots import Autopilot
 from pondhop.missions.mission import POSITIONED, Action, Mission
@@ -201,7 +202,7 @@ def _legs(mission: Mission) -> tuple[list[str], list[tuple[LonLat, LonLat]]]:
     """Names and end points of all flights between different places, the way back included."""
     names, paths = [], []
     position, name = mission.home, "home"
-    stops = [(item.position, f"pond {item.pond_id}" if item.pond_id else "home") for item in mission.items]
+    stops = [(item.position, pond_called(item.pond_id) if item.pond_id else "home") for item in mission.items]
     if mission.items and mission.items[-1].action is Action.RETURN_TO_LAUNCH:
         stops.append((mission.home, "home"))
     for next_position, next_name in stops:
@@ -214,5 +215,5 @@ def _legs(mission: Mission) -> tuple[list[str], list[tuple[LonLat, LonLat]]]:
 
 def _place(mission: Mission, index: int) -> str:
     item = mission.items[index]
-    pond = f", pond {item.pond_id}" if item.pond_id is not None else ""
+    pond = f", {pond_called(item.pond_id)}" if item.pond_id is not None else ""
     return f"{mission.name}, item {index + 1} ({item.action.value}{pond})"
