@@ -25,7 +25,7 @@ from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm
 from pondhop.farm.words import pond_called
 from pondhop.fleet import Fleet
-from pondhop.limits import Proofs
+from pondhop.proofs import Proofs
 from pondhop.solution import FarmPlan, FarmViolation, Solution
 
 Routes = Sequence[Sequence[int]]

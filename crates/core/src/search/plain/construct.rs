@@ -15,8 +15,8 @@ use super::order::{curve_keys, ends_by_cost, place_after_widest_gap, pseudo_angl
 use crate::geometry::Point;
 use crate::random::Random;
 
-/// The visits by their angle around the depot, and what that order makes of them.
-pub(super) struct Sectors<'a> {
+/// Cuts a farm into parts, one for each route: what sectors and random lines need to know of the visits.
+pub(super) struct Cuts<'a> {
     network: &'a Network,
     /// Sorted by angle; the first follows the widest gap.
     visits: Vec<u32>,
@@ -24,7 +24,7 @@ pub(super) struct Sectors<'a> {
     curve_keys: Vec<u32>,
 }
 
-impl<'a> Sectors<'a> {
+impl<'a> Cuts<'a> {
     pub fn new(network: &'a Network) -> Self {
         let depot = network.depot();
         let points = &network.points[..network.num_visits];
@@ -110,14 +110,14 @@ mod tests {
     use crate::search::plain::testing::research_network;
 
     #[test]
-    fn random_cuts_share_the_visits_evenly_and_apart() {
+    fn random_cuts_share_the_visits_evenly() {
         let farm = generate(97, Variant::Authors, 2).unwrap();
         let network = research_network(farm.depot, &farm.ponds, 5);
-        let sectors = Sectors::new(&network);
+        let cuts = Cuts::new(&network);
         let mut random = Random::new(1);
         for _ in 0..20 {
             let mut visits: Vec<u32> = (0..97).collect();
-            let routes = sectors.cut_at_random(&mut visits, 5, &mut random);
+            let routes = cuts.cut_at_random(&mut visits, 5, &mut random);
             let mut served = routes.concat();
             served.sort_unstable();
             assert_eq!(served, (0..97).collect::<Vec<u32>>());
@@ -129,8 +129,8 @@ mod tests {
     fn two_parts_of_a_line_are_its_halves() {
         let ponds: Vec<Point> = (0..10).map(|x| Point::new(f64::from(x), 0.0)).collect();
         let network = research_network(Point::new(0.0, 1.0), &ponds, 2);
-        let sectors = Sectors::new(&network);
-        let mut routes = sectors.cut_at_random(&mut (0..10).rev().collect::<Vec<u32>>(), 2, &mut Random::new(4));
+        let cuts = Cuts::new(&network);
+        let mut routes = cuts.cut_at_random(&mut (0..10).rev().collect::<Vec<u32>>(), 2, &mut Random::new(4));
         routes.iter_mut().for_each(|route| route.sort_unstable());
         routes.sort();
         assert_eq!(routes, [vec![0, 1, 2, 3, 4], vec![5, 6, 7, 8, 9]]);
@@ -140,7 +140,7 @@ mod tests {
     fn more_parts_than_visits_leave_some_empty() {
         let ponds = [Point::new(1.0, 0.0), Point::new(2.0, 3.0)];
         let network = research_network(Point::new(0.0, 0.0), &ponds, 2);
-        let routes = Sectors::new(&network).cut_at_random(&mut [0, 1], 5, &mut Random::new(4));
+        let routes = Cuts::new(&network).cut_at_random(&mut [0, 1], 5, &mut Random::new(4));
         assert_eq!((routes.len(), routes.concat().len()), (5, 2));
     }
 }

@@ -6,7 +6,7 @@
 //! Source: the island model (Cohoon, Hegde, Martin and Richards, ICGA 1987): populations that breed apart keep what one alone
 //! loses. Changed: they meet only once, at the end, and breed one after the other, so that a plan depends on the effort alone.
 
-use super::construct::Sectors;
+use super::construct::Cuts;
 use super::context::Search;
 use super::population::{Breeding, Population};
 use super::starts::Starts;
@@ -25,11 +25,11 @@ const START_STEPS_PER_VISIT: f64 = 0.3;
 /// The plans of one thread when its starts have raced; where the effort allows several islands, when all of them have bred.
 pub(super) fn settle<'a>(
     search: &'a Search<'a>,
-    sectors: &'a Sectors<'a>,
+    cuts: &'a Cuts<'a>,
     effort: &mut Effort<'_>,
     thread: usize,
 ) -> Population<'a> {
-    let mut starts = Starts::new(search, sectors, thread);
+    let mut starts = Starts::new(search, cuts, thread);
     let begin = effort.share();
     let first = starts.make();
     let start_steps = START_STEPS_PER_VISIT * search.network.num_visits as f64;
@@ -41,7 +41,7 @@ pub(super) fn settle<'a>(
         end,
         steps_per_visit,
         stream: (thread + island * search.options.num_threads) as u64,
-        recuts_along: (num_islands > 1).then_some(sectors),
+        recuts_along: (num_islands > 1).then_some(cuts),
         longest_elsewhere: f64::INFINITY,
     };
     if num_islands == 1 {

@@ -9,7 +9,7 @@
 //!     a child of two: some routes of one, side by side, the others of the other, the seam mended         recombine
 //!     anneal it as below; give it what is better in the others                                           cycles, assemble
 //!     even out its routes, as below; it replaces the worst, if it is better                              population
-//!     even more time? 2 to 16 races with children first, one after the other; the best of all go on      islands
+//!     even more time? 2 to 8 races with children first, one after the other; the best of all go on      islands
 //! else, until 88 % of the time:                                                                          anneal
 //!     take some ten visits out, as strings of neighbouring routes, half the time around the longest      ruin
 //!     put each back where it is cheapest, a route that grows too long charged 10 or 1,000 times the excess;

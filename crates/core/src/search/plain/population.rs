@@ -9,7 +9,7 @@ use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
 use super::assemble::assemble;
 use super::balance::balance;
-use super::construct::Sectors;
+use super::construct::Cuts;
 use super::context::{MAX_HEAT, Search};
 use super::recombine::{cross, recut};
 use super::starts::Starts;
@@ -57,7 +57,7 @@ pub(super) struct Breeding<'a> {
     /// Number of its random stream, another for each population of a search.
     pub stream: u64,
     /// What cuts routes of children anew: `None`, if none are.
-    pub recuts_along: Option<&'a Sectors<'a>>,
+    pub recuts_along: Option<&'a Cuts<'a>>,
     /// Longest route of the best plan of other populations, so that progress tells of the best of all.
     pub longest_elsewhere: f64,
 }

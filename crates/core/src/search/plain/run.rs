@@ -3,7 +3,7 @@
 use super::airspace::SharedAirspace;
 use super::anneal::{Chain, Schedule};
 use super::balance::balance;
-use super::construct::Sectors;
+use super::construct::Cuts;
 use super::context::{MAX_HEAT, Search, TOTAL_HEAT};
 use super::cooperate::Meeting;
 use super::improve::improve_routes;
@@ -96,11 +96,15 @@ impl Thread<'_> {
     fn run(&self) -> Found {
         let search = self.search;
         let mut effort = Effort::new(search.budget);
-        let sectors = Sectors::new(search.network);
-        let mut population = match (search.options.start, search.options.goal) {
-            (Some(routes), _) => Population::single(search, search.chain_from(&to_nodes(routes), self.index as u64)),
-            (None, Goal::Max) => settle(search, &sectors, &mut effort, self.index),
-            (None, Goal::Total) => Population::single(search, self.fewest_routes(&sectors)),
+        let cuts;
+        let mut population = if let Some(routes) = search.options.start {
+            Population::single(search, search.chain_from(&to_nodes(routes), self.index as u64))
+        } else {
+            cuts = Cuts::new(search.network);
+            match search.options.goal {
+                Goal::Max => settle(search, &cuts, &mut effort, self.index),
+                Goal::Total => Population::single(search, self.fewest_routes(&cuts)),
+            }
         };
         let floor = search.floor();
         let max_end = if search.is_allowed(&population.best().best) { 0.0 } else { MAX_END };
@@ -163,11 +167,11 @@ impl Thread<'_> {
 
     /// A start for the least total: as few routes as the drones' limit allows, because every route costs two depot legs, and no
     /// later step is wide enough to give up a long one.
-    fn fewest_routes(&self, sectors: &Sectors<'_>) -> Chain<SharedAirspace> {
+    fn fewest_routes(&self, cuts: &Cuts<'_>) -> Chain<SharedAirspace> {
         let Search { network, budget, .. } = *self.search;
         let mut num_routes = 1;
         loop {
-            let mut routes = sectors.routes(&vec![1.0; num_routes]);
+            let mut routes = cuts.routes(&vec![1.0; num_routes]);
             improve_routes(network, budget, &mut routes);
             let chain = self.search.chain_from(&routes, self.index as u64);
             if num_routes == network.num_routes || self.search.is_allowed(&chain.best) {

@@ -2,7 +2,7 @@
 
 use super::airspace::SharedAirspace;
 use super::anneal::Chain;
-use super::construct::Sectors;
+use super::construct::Cuts;
 use super::context::Search;
 use super::improve::improve_routes;
 use crate::random::Random;
@@ -13,7 +13,7 @@ const SHARE_SPREAD: f64 = 0.3;
 /// Makes the starts of one thread, one after the other.
 pub(super) struct Starts<'a> {
     search: &'a Search<'a>,
-    sectors: &'a Sectors<'a>,
+    cuts: &'a Cuts<'a>,
     thread: usize,
     num_made: usize,
     /// Whether half the starts are cut at random instead of along sectors.
@@ -21,8 +21,8 @@ pub(super) struct Starts<'a> {
 }
 
 impl<'a> Starts<'a> {
-    pub fn new(search: &'a Search<'a>, sectors: &'a Sectors<'a>, thread: usize) -> Self {
-        Self { search, sectors, thread, num_made: 0, has_random_cuts: false }
+    pub fn new(search: &'a Search<'a>, cuts: &'a Cuts<'a>, thread: usize) -> Self {
+        Self { search, cuts, thread, num_made: 0, has_random_cuts: false }
     }
 
     /// The next start: equal sectors first, then sectors of random shares, two in turn with two random cuts if there are any.
@@ -34,12 +34,12 @@ impl<'a> Starts<'a> {
         let mut random = Random::new(self.search.seed(stream));
         let mut routes = if self.has_random_cuts && index % 4 >= 2 {
             let mut visits: Vec<u32> = (0..network.num_visits as u32).collect();
-            self.sectors.cut_at_random(&mut visits, network.num_routes, &mut random)
+            self.cuts.cut_at_random(&mut visits, network.num_routes, &mut random)
         } else {
             let spread = if stream == 0 { 0.0 } else { SHARE_SPREAD };
             let shares: Vec<f64> =
                 (0..network.num_routes).map(|_| 1.0 + spread * (2.0 * random.uniform() - 1.0)).collect();
-            self.sectors.routes(&shares)
+            self.cuts.routes(&shares)
         };
         improve_routes(network, budget, &mut routes);
         self.search.chain_from(&routes, stream)

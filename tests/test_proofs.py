@@ -11,7 +11,7 @@ import pytest
 
 import pondhop
 from pondhop import Energy, Fleet, Problem, evaluate, planners
-from pondhop.limits import Proofs
+from pondhop.proofs import Proofs
 
 
 def every_plan(num_ponds: int, num_drones: int) -> Iterator[list[list[int]]]:
