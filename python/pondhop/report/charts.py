@@ -191,11 +191,14 @@ def _time_words(power: int) -> str:
 
 
 def _gap_axis(ax: Axes, look: Look) -> None:
+    """An axis of gaps; those below 0, of plans better than the best known of a file, have room as well."""
     ax.set_yscale("symlog", linthresh=LINEAR_BELOW_PERCENT, linscale=0.5)
     highest = 1.3 * ax.get_ylim()[1]
-    ax.set_ylim(-0.02, highest)
-    ticks = [tick for tick in (0, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000) if tick <= highest]
-    _set_ticks(ax.yaxis, ticks, [f"{tick:g} %" for tick in ticks])
+    least = min(float(sibling.dataLim.y0) for sibling in ax.get_shared_y_axes().get_siblings(ax))
+    lowest = min(-0.02, 1.3 * least)
+    ax.set_ylim(lowest, highest)
+    ticks = [tick for tick in (-1, -0.1, 0, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000) if lowest <= tick <= highest]
+    _set_ticks(ax.yaxis, ticks, [f"{tick:g} %".replace("-", "\N{MINUS SIGN}") for tick in ticks])
     ax.set_ylabel("longest route above the best known", color=look.faint_ink)
 
 
