@@ -17,6 +17,7 @@ import pytest
 from hand_made import make_farm, make_plan, square, two_drones
 from pondhop import cli, instances, outputs, planners
 from pondhop.documents import atomic
+from pondhop.documents.signals import signals_held_back
 from pondhop.errors import InvalidInput
 from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan
@@ -331,6 +332,22 @@ def test_plans_are_kept_when_the_program_is_stopped(number: int, code: int, tmp_
     found = json.loads(plans.read_text())
     assert 3 <= len(found) < 500
     assert f"stopped; {len(found)} of 500 farms are planned" in told
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+def test_signals_held_back_are_each_delivered_once() -> None:
+    heard: list[int] = []
+    numbers = (signal.SIGHUP, signal.SIGTERM)
+    handlers = [signal.signal(number, lambda number, _frame: heard.append(number)) for number in numbers]
+    try:
+        with signals_held_back():
+            for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGHUP):
+                signal.raise_signal(number)
+            assert heard == []
+        assert heard == [signal.SIGHUP, signal.SIGTERM]
+    finally:
+        for number, handler in zip(numbers, handlers, strict=True):
+            signal.signal(number, handler)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")

@@ -96,8 +96,9 @@ def _heeded() -> list[int]:
 
 
 def _deliver(numbers: list[int]) -> None:
-    # The first one stops the program, and the user need not stop it twice.
-    for number in numbers[:1]:
+    # One that stops the program raises, and the user need not stop it twice; one that a program of the user's heeds in
+    # another way, as by reading its settings again, must not swallow those after it.
+    for number in dict.fromkeys(numbers):
         signal.raise_signal(number)
 
 
