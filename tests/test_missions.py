@@ -432,6 +432,28 @@ def test_legs_stay_inside_every_fence_and_outside_no_fly_zones() -> None:
     assert [rule.kind for rule in broken_rules(mission, ARDUPILOT)] == ["outside_fence", "crosses_no_fly"]
 
 
+def test_areas_are_told_as_the_farm_has_them() -> None:
+    # P4 lies beyond the hole of the first zone, in the second, and in a hole of the fence.
+    around_p4 = square(-88.998, 37.001, 0.0001)
+    mission = build(
+        Fleet(num_drones=1),
+        [4],
+        fences=((square(*DEPOT, 0.01), square(-89.005, 37.0, 0.0001), around_p4),),
+        no_fly=((square(*DEPOT, 0.005), square(*DEPOT, 0.001)), (around_p4,)),
+    )
+    assert [fault.path for fault in check(mission)] == [
+        "drone-1, the hole of no-fly zone 1",
+        "drone-1, no-fly zone 2",
+        "drone-1, hole 2 of fence 1",
+    ]
+    # A mission read back from a file has rings alone.
+    assert [fault.path for fault in check(replace(mission, fence_names=(), no_fly_names=()))] == [
+        "drone-1, fence 2",
+        "drone-1, no-fly zone 1",
+        "drone-1, no-fly zone 3",
+    ]
+
+
 def test_legs_keep_a_margin_to_fences_and_no_fly_zones() -> None:
     # From home north to P2, 111 m away; the fence ends 3 m behind the pond.
     fence = ((-89.001, 36.999), (-88.999, 36.999), (-88.999, 37.001027), (-89.001, 37.001027), (-89.001, 36.999))
