@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import fields
 from decimal import Decimal
@@ -327,6 +328,8 @@ def test_python_and_the_core_take_the_same_for_numbers() -> None:
 )
 def test_a_value_is_shown_on_one_line(value: object, text: str) -> None:
     assert shown(value) == text
+    with pytest.raises(InvalidInput, match=re.escape(f"num_drones: it is {text} (give a whole number from 1")):
+        Fleet(value)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("wrong", [True, np.bool_(True), np.array(1.5), "1.5"])
@@ -373,4 +376,6 @@ def test_every_wrong_argument_is_told_at_once() -> None:
 def test_numbers_of_numpy_are_numbers() -> None:
     solution = pondhop.solve(PROBLEM, seed=np.int64(3), iterations=np.int32(10), time_limit_s=np.float32(5))  # type: ignore[arg-type]
     assert type(solution.seed) is int
+    fleet = Fleet(np.int64(2), speed_m_s=Fraction(5, 2), leg_stop_s=np.float32(0.1))  # type: ignore[arg-type]
+    assert (fleet.num_drones, fleet.speed_m_s, fleet.leg_stop_s) == (2, 2.5, 0.1)
     assert pondhop.LocalFrame(np.float32(1.5), 2).origin_deg == (1.5, 2.0)  # type: ignore[arg-type]
