@@ -15,7 +15,10 @@ STOPPING_SIGNALS = tuple(
 """What stops a program: Ctrl-C, `kill` and the end of a session, a terminal that is closed."""
 
 SIGNALLED = 128
-"""A program that a signal stopped ends with this and the signal's number: 130 for Ctrl-C, 143 for a request to end."""
+"""A program that a signal stopped ends with this and the signal's number.
+
+130 for Ctrl-C, 143 for a request to end, 129 for a terminal that was closed.
+"""
 
 _STDERR = 2
 
