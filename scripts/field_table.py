@@ -15,6 +15,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+from pondhop.units import counted
+
+AREAS = {"no_fly": "no-fly zone", "fences": "fence", "stations": "station"}
+
 FIELD = Path(__file__).resolve().parents[2] / "shared" / "data" / "field"
 
 
@@ -56,11 +60,10 @@ def outcome(path: Path, options: list[str]) -> tuple[int, str]:
         if plan_file.exists():
             farm = json.loads(plan_file.read_text(encoding="utf-8"))["farm"]
             ids = [pond["id"] for pond in farm["ponds"]]
-            areas = ", ".join(f"{len(farm[key])} {key}" for key in ("no_fly", "fences", "stations") if farm.get(key))
-            missions = len(list((Path(folder) / "missions").glob("*.plan")))
-            told.append(
-                f"{len(ids)} ponds ({', '.join(ids[:3])}{', ...' if len(ids) > 3 else ''}), {missions} missions"
-            )
+            areas = ", ".join(counted(len(farm[key]), noun) for key, noun in AREAS.items() if farm.get(key))
+            missions = counted(len(list((Path(folder) / "missions").glob("*.plan"))), "mission")
+            names = f"{', '.join(ids[:3])}{', ...' if len(ids) > 3 else ''}"
+            told.append(f"{counted(len(ids), 'pond')} ({names}), {missions}")
             told += [areas] if areas else []
             told += farm["notes"]
     lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]

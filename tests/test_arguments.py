@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import fields
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ import pytest
 import pondhop
 from hand_made import make_farm, two_drones
 from pondhop import Fleet, InvalidInput, _core, instances, missions, outputs
+from pondhop.arguments import shown
 from pondhop.files.plan_json import write_plan_json
 
 FARM_PLAN = two_drones()
@@ -21,6 +25,14 @@ PROBLEM = FARM_PLAN.solution.problem
 FARM = FARM_PLAN.farm
 RESEARCH_FARMS = pondhop.generate(20, seed=1)
 RESEARCH = RESEARCH_FARMS[0].to_problem(2)
+
+
+class Bad:
+    """A value that cannot even be shown."""
+
+    def __repr__(self) -> str:
+        raise RuntimeError("no words for it")
+
 
 PLANNING: dict[str, object] = {
     "planner": "search",
@@ -56,7 +68,16 @@ WRONG: list[Any] = [
     (1,),
     (1, 2, 3),
     np.array([1.0, 2.0]),
+    np.zeros((30, 30)),
+    np.array(1.5),
+    np.bool_(True),
     np.ma.masked,
+    Bad(),
+    [Bad()],
+    Fraction(10**400),
+    Decimal("1.5"),
+    ("1", "2"),
+    "two\nlines",
     object(),
     lambda: 0,
     complex(1, 2),
@@ -149,8 +170,25 @@ FUNCTIONS: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "missions.judged": (missions.judged, {"farm_plan": FARM_PLAN, "units": "us"}),
     "hpp": (_core.hpp, {"problem": PROBLEM, "seed": 1}),
     "hpp_clusters": (_core.hpp_clusters, {"problem": PROBLEM, "seed": 1}),
-    "territory": (_core.territory, {"problem": PROBLEM, "seed": 1}),
-    "search": (lambda **given: _core.search(**given, iterations=5), {"problem": PROBLEM, "seed": 1}),
+    "territory": (
+        lambda **given: _core.territory(**given),
+        {"problem": RESEARCH, "seed": 1, "time_limit_s": 1.0, "iterations": 5, "progress": None},
+    ),
+    "search": (
+        lambda **given: _core.search(**({"iterations": 5} | given)),
+        {
+            "problem": RESEARCH,
+            "seed": 1,
+            "time_limit_s": 0.01,
+            "threads": 1,
+            "slack": 0.0,
+            "objective": "max",
+            "start": None,
+            "progress": None,
+        },
+    ),
+    "search with iterations": (lambda **given: _core.search(RESEARCH, time_limit_s=0.01, **given), {"iterations": 5}),
+    "_core.generate": (_core.generate, {"num_ponds": 5, "seed": 1, "variant": "paper"}),
     "leg_lengths": (_core.leg_lengths, {"problem": PROBLEM}),
 }
 
@@ -159,6 +197,7 @@ def assert_wrong_values_are_told(function: Callable[..., object], good: dict[str
     """No value in the place of any argument leads to anything but a result or a fault in our words."""
     function(**good)
     told: list[str] = []
+    files: list[str] = []
     for name in good:
         for wrong in WRONG:
             try:
@@ -167,9 +206,10 @@ def assert_wrong_values_are_told(function: Callable[..., object], good: dict[str
                 told += [fault.message for fault in error.faults]
             except OSError as error:
                 # A name of no file that can be read or written is told by its name.
-                told.append(str(error.filename))
+                files.append(str(error.filename))
     # Nobody reads numbers of some thousand digits.
-    assert max(map(len, told)) < 400
+    assert max(map(len, told + files)) < 400
+    assert "\n" not in "".join(told)
 
 
 @pytest.fixture
@@ -241,6 +281,92 @@ def test_a_wrong_value_is_told_with_the_name_of_its_argument(call: Callable[[], 
     assert str(error.value).startswith(fault)
 
 
+def faults_of(call: Callable[..., object], **given: object) -> list[str]:
+    try:
+        call(**given)
+    except InvalidInput as error:
+        return [str(fault) for fault in error.faults]
+    return []
+
+
+@pytest.mark.parametrize("function", [_core.hpp, _core.hpp_clusters, _core.territory, _core.search])
+@pytest.mark.parametrize("name", ["problem", "seed"])
+def test_python_and_the_core_say_the_same_of_a_wrong_value(name: str, function: Callable[..., object]) -> None:
+    effort = {"iterations": 5} if function is _core.search else {}
+    for wrong in WRONG:
+        given = {"problem": RESEARCH, "seed": 1, name: wrong}
+        told = faults_of(pondhop.solve, **given, iterations=5)
+        assert faults_of(function, **given, **effort) == told, shown(wrong)
+
+
+def test_python_and_the_core_take_the_same_for_numbers() -> None:
+    for wrong in WRONG:
+        by_core = faults_of(pondhop.Energy, takeoff_j=wrong)
+        told = faults_of(Fleet(2).service_energy_j, service_s=wrong)
+        # What is a number and out of range is told with the range, which differs.
+        if any("give a real number" in fault for fault in by_core):
+            assert [fault.partition(" (")[0].partition(": ")[2] for fault in by_core] == [
+                fault.partition(" (")[0].partition(": ")[2] for fault in told
+            ]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (Bad(), "a Bad"),
+        ([Bad()], "a list"),
+        (np.zeros((30, 30)), "an ndarray"),
+        (np.ma.masked, "masked"),
+        (object(), "an object"),
+        (2**200, "a number of very many digits"),
+        ([10**5000], "a list"),
+        ("x" * 50, "'" + "x" * 36 + "..."),
+        ([np.eye(2)], "[array([[1., 0.], [0., 1.]])]"),
+        (len, "a builtin_function_or_method"),
+    ],
+    ids=["bad", "list of bad", "array", "masked", "object", "digits", "list of digits", "long", "lines", "function"],
+)
+def test_a_value_is_shown_on_one_line(value: object, text: str) -> None:
+    assert shown(value) == text
+    with pytest.raises(InvalidInput, match=re.escape(f"num_drones: it is {text} (give a whole number from 1")):
+        Fleet(value)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("wrong", [True, np.bool_(True), np.array(1.5), "1.5"])
+def test_what_is_no_number_is_no_speed(wrong: Any) -> None:
+    with pytest.raises(InvalidInput, match=r"speed_m_s: it is .* \(give a real number"):
+        pondhop.Problem([0, 0], [[1, 1]], 1, speed_m_s=wrong)
+
+
+@pytest.mark.parametrize("wrong", [("1", "2"), (1 + 2j, 3), (True, False), [np.ma.masked, 1.0], Fraction(10**400)])
+def test_what_is_no_number_is_no_position(wrong: Any) -> None:
+    with pytest.raises(InvalidInput, match=r"at: it is .* \(give longitude"):
+        pondhop.generate_farm(5, at=wrong)
+
+
+def test_every_wrong_argument_of_the_search_is_told_at_once() -> None:
+    told = faults_of(
+        _core.search,
+        problem=RESEARCH,
+        seed=-1,
+        time_limit_s=0,
+        iterations="x",
+        threads=0,
+        slack=math.nan,
+        objective=3,
+        progress=3,
+    )
+    assert [fault.partition(" (")[0] for fault in told] == [
+        "seed: it is -1",
+        "time_limit_s: it is 0",
+        "iterations: it is 'x'",
+        "threads: it is 0",
+        "slack: it is NaN",
+        "objective: it is 3",
+        "progress: it is 3",
+    ]
+
+
 def test_every_wrong_argument_is_told_at_once() -> None:
     with pytest.raises(InvalidInput) as error:
         pondhop.plan(make_farm, "fleet")  # type: ignore[arg-type]
@@ -250,4 +376,6 @@ def test_every_wrong_argument_is_told_at_once() -> None:
 def test_numbers_of_numpy_are_numbers() -> None:
     solution = pondhop.solve(PROBLEM, seed=np.int64(3), iterations=np.int32(10), time_limit_s=np.float32(5))  # type: ignore[arg-type]
     assert type(solution.seed) is int
+    fleet = Fleet(np.int64(2), speed_m_s=Fraction(5, 2), leg_stop_s=np.float32(0.1))  # type: ignore[arg-type]
+    assert (fleet.num_drones, fleet.speed_m_s, fleet.leg_stop_s) == (2, 2.5, 0.1)
     assert pondhop.LocalFrame(np.float32(1.5), 2).origin_deg == (1.5, 2.0)  # type: ignore[arg-type]

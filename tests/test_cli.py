@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -18,6 +19,8 @@ from hand_made import make_farm, make_plan, square, two_drones
 from pondhop import Separation, cli, instances, planners, plot
 from pondhop.cli import shared
 from pondhop.cli.printed import print_farm_plan
+from pondhop.cli.shared import EXIT_BUG, EXIT_INFEASIBLE, EXIT_INVALID_INPUT
+from pondhop.documents.signals import SIGNALLED, STOPPING_SIGNALS
 from pondhop.files.plan_json import write_plan_json
 from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan
@@ -391,6 +394,8 @@ def test_ctrl_c_ends_without_a_traceback(tmp_path: Path) -> None:
 
 
 STOPPING = [(signal.SIGINT, 130, "with Ctrl-C"), (signal.SIGTERM, 143, "by SIGTERM")]
+if sys.platform != "win32":
+    STOPPING.append((signal.SIGHUP, 129, "by SIGHUP"))
 
 SIGNAL_AT_AN_IMPORT = """
 import os, sys
@@ -441,6 +446,12 @@ def test_the_reference_is_what_help_says() -> None:
     generated = subprocess.run([*command, *title], capture_output=True, text=True, check=True).stdout
     page = (ROOT / "docs" / "reference" / "cli.md").read_text()
     assert page.strip() == generated.strip(), "run: make docs"
+
+
+def test_the_reference_names_every_exit_code() -> None:
+    told = (ROOT / "docs" / "reference" / "cli.md").read_text().partition("Exit codes:")[2].partition("\n\n")[0]
+    codes = [0, EXIT_BUG, EXIT_INVALID_INPUT, EXIT_INFEASIBLE, *(SIGNALLED + number for number in STOPPING_SIGNALS)]
+    assert sorted(map(int, re.findall(r"\d+", told))) == sorted(codes)
 
 
 def test_help_names_every_planner(run: Run) -> None:

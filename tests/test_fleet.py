@@ -82,6 +82,19 @@ def test_every_fault_is_named_at_once(tmp_path: Path) -> None:
     assert faults["sped_m_s"] == "did you mean speed_m_s?"
 
 
+def test_faults_of_several_settings_are_named_with_the_others(tmp_path: Path) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text(
+        "num_drones = 60\ndwell_s = 0.4\nspeed_m_s=0\ndip_height_m = 9\nlayer_spacing_m = 3\nreserve_percent = -1\nx=1"
+    )
+    found = [place for place, _ in faults_of(path)]
+    assert found == ["x", "dwell_s", "speed_m_s", "reserve_percent", "dip_height_m", "layer_spacing_m"]
+    # Nothing is said of settings together of which one is wrong for itself.
+    path.write_text("dwell_s = 0\nsampling = 3\ndip_height_m = 1000\nlayer_spacing_m = 50\nreturn_height_m = -1\n")
+    found = [place for place, _ in faults_of(path)]
+    assert found == ["num_drones", "sampling", "dip_height_m", "return_height_m"]
+
+
 @pytest.mark.parametrize("value", ["0", "-1", "2.5", "true", '"three"', "[1]", "99999999"])
 def test_the_number_of_drones_is_a_sensible_whole_number(tmp_path: Path, value: str) -> None:
     path = tmp_path / "fleet.toml"
@@ -118,9 +131,9 @@ def test_any_bytes_give_a_fleet_or_faults(tmp_path_factory: pytest.TempPathFacto
         ({"dwell_s": 0.4}, "dwell_s", "no whole number of seconds"),
         ({"dwell_s": 0.0, "sampling": "splashdown"}, "dwell_s", "no stay"),
         ({"num_drones": 40, "layer_spacing_m": 3.0}, "layer_spacing_m", "comes home at 132 m"),
-        ({"layer_spacing_m": 1.9}, "layer_spacing_m", "out of range"),
-        ({"battery_wh": 0.0}, "battery_wh", "out of range"),
-        ({"reserve_percent": 99.0}, "reserve_percent", "out of range"),
+        ({"layer_spacing_m": 1.9}, "layer_spacing_m", "it is 1.9"),
+        ({"battery_wh": 0.0}, "battery_wh", "it is 0.0"),
+        ({"reserve_percent": 99.0}, "reserve_percent", "it is 99.0"),
     ],
 )
 def test_one_wrong_setting_is_one_fault(settings: dict[str, Any], path: str, message: str) -> None:
@@ -145,9 +158,14 @@ def test_drones_come_home_in_layers_of_their_own() -> None:
     assert Fleet(2, transit_height_m=30.0).layers(2).way_home_m == 30.0
     assert Fleet(50).layers(50).way_home_height_m(49) == pytest.approx(121.9)
     assert Fleet(60).layers(20).spacing_m == 3.0
-    with pytest.raises(InvalidInput, match="55 drones fly, but above 15 m there is room for 54 layers of 2 m"):
+    with pytest.raises(
+        InvalidInput,
+        match=r"come home 2 m above each other: the highest at 123 m .fly at most 54 drones, 2 m apart, or lower",
+    ):
         Fleet(10_000).layers(55)
-    with pytest.raises(InvalidInput, match=r"room for 1 layer of 2 m below 121.9 m .plan for 1"):
+    with pytest.raises(
+        InvalidInput, match=r"the highest at 125.9 m .fly one drone, or lower .* nothing may fly above 121.9 m"
+    ):
         Fleet(3, transit_height_m=121.9).layers(6)
     assert Fleet(3, transit_height_m=121.9).layers(1).way_home_m == 121.9
     # Drones that cannot fly for want of ponds need no layers.
@@ -170,8 +188,14 @@ def test_each_layer_costs_a_climb_and_a_descent_each_way() -> None:
 def test_the_remedy_for_layers_too_high_is_one() -> None:
     for settings, remedy in (
         ({"num_drones": 40, "layer_spacing_m": 3.0}, "give at most 2.7 m: "),
-        ({"num_drones": 60, "layer_spacing_m": 3.0}, "fly with at most 54 drones (2 m apart), or lower: "),
-        ({"num_drones": 3, "layer_spacing_m": 3.0, "transit_height_m": 121.9}, "fly with at most 1 drones (2 m apart)"),
+        (
+            {"num_drones": 60, "layer_spacing_m": 3.0},
+            "fly at most 54 drones, 2 m apart, or lower (transit_height_m, return_height_m): ",
+        ),
+        (
+            {"num_drones": 3, "layer_spacing_m": 3.0, "transit_height_m": 121.9},
+            "fly one drone, or lower (transit_height_m, return_height_m): ",
+        ),
     ):
         with pytest.raises(InvalidInput) as caught:
             Fleet(**settings)  # type: ignore[arg-type]

@@ -224,6 +224,8 @@ def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:
     write_missions(tmp_path, make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]]))
     first, second = (parameters(tmp_path / f"drone-{drone}.param") for drone in (1, 2))
     assert (first["RTL_ALT"], second["RTL_ALT"]) == (1500, 2000)
+    # From near home, too: no cone caps that height, no least climb lifts it.
+    assert (first["RTL_CONE_SLOPE"], first["RTL_CLIMB_MIN"]) == (0, 0)
     assert (first["WPNAV_SPEED"], first["RTL_SPEED"]) == (600, 1000)
     assert first["MIS_OPTIONS"] == 4
     # Twice the stay and half a minute: a pause on the water begins the stay anew.
@@ -241,6 +243,8 @@ def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:
     assert {row[2]: int(row[4]) for row in rows} == {
         "WPNAV_SPEED": 9,
         "RTL_ALT": 6,
+        "RTL_CONE_SLOPE": 9,
+        "RTL_CLIMB_MIN": 4,
         "RTL_SPEED": 4,
         "RTL_LOIT_TIME": 6,
         "MIS_OPTIONS": 4,
@@ -260,9 +264,11 @@ def test_no_parameter_file_mixes_centimetres_and_metres(tmp_path: Path) -> None:
     old, new = parameters(tmp_path / "drone-2.param"), parameters(tmp_path / "drone-2-4.7.param")
     assert (old.pop("WPNAV_SPEED"), old.pop("RTL_ALT"), old.pop("RTL_SPEED")) == (500, 1800, 1000)
     assert (new.pop("WP_SPD"), new.pop("RTL_ALT_M"), new.pop("RTL_SPEED_MS")) == (5, 18, 10)
+    assert (old.pop("RTL_CLIMB_MIN"), new.pop("RTL_CLIMB_MIN_M")) == (0, 0)
     assert old == new
+    assert new["RTL_CONE_SLOPE"] == 0
     rows = [line.split("\t") for line in (tmp_path / "drone-2-4.7.params").read_text().splitlines() if line[0] != "#"]
-    assert {row[2] for row in rows} == {*new, "WP_SPD", "RTL_ALT_M", "RTL_SPEED_MS"}
+    assert {row[2] for row in rows} == {*new, "WP_SPD", "RTL_ALT_M", "RTL_CLIMB_MIN_M", "RTL_SPEED_MS"}
     text = " ".join((tmp_path / "README.txt").read_text().split())
     assert "Copter from version 4.7: load drone-N-4.7.param or drone-N-4.7.params instead" in text
     assert "RTL_ALT is RTL_ALT_M x 100" in text
@@ -430,6 +436,28 @@ def test_legs_stay_inside_every_fence_and_outside_no_fly_zones() -> None:
         ("drone-1, no-fly zone 1", "1 of 4 legs are not outside it (leg from home to pond P0)"),
     ]
     assert [rule.kind for rule in broken_rules(mission, ARDUPILOT)] == ["outside_fence", "crosses_no_fly"]
+
+
+def test_areas_are_told_as_the_farm_has_them() -> None:
+    # P4 lies beyond the hole of the first zone, in the second, and in a hole of the fence.
+    around_p4 = square(-88.998, 37.001, 0.0001)
+    mission = build(
+        Fleet(num_drones=1),
+        [4],
+        fences=((square(*DEPOT, 0.01), square(-89.005, 37.0, 0.0001), around_p4),),
+        no_fly=((square(*DEPOT, 0.005), square(*DEPOT, 0.001)), (around_p4,)),
+    )
+    assert [fault.path for fault in check(mission)] == [
+        "drone-1, the hole of no-fly zone 1",
+        "drone-1, no-fly zone 2",
+        "drone-1, hole 2 of fence 1",
+    ]
+    # A mission read back from a file has rings alone.
+    assert [fault.path for fault in check(replace(mission, fence_names=(), no_fly_names=()))] == [
+        "drone-1, fence 2",
+        "drone-1, no-fly zone 1",
+        "drone-1, no-fly zone 3",
+    ]
 
 
 def test_legs_keep_a_margin_to_fences_and_no_fly_zones() -> None:

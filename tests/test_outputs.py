@@ -10,12 +10,14 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import IO
 
 import pytest
 
 from hand_made import make_farm, make_plan, square, two_drones
 from pondhop import cli, instances, outputs, planners
 from pondhop.documents import atomic
+from pondhop.documents.signals import signals_held_back
 from pondhop.errors import InvalidInput
 from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan
@@ -180,12 +182,20 @@ def test_nothing_is_left_of_a_write_that_a_signal_stops(step: str, after: int, n
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
 @pytest.mark.parametrize("after", [0, 1, 4, 7, 8, 9, 10, 15, 20, 23])
-def test_what_a_killed_write_left_goes_with_the_next_plan(after: int, tmp_path: Path) -> None:
+def test_what_a_killed_write_left_goes_with_the_next_plan(
+    after: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "out"
     outputs.write_outputs(folder, one_drone(), has_figure=False)
     # Nine old files go out, fifteen new ones come in.
     assert signalled_write(folder, "rename", after, signal.SIGKILL) == -signal.SIGKILL
     assert len(left_behind(folder)) == 1
+    before = contents(folder)
+    with monkeypatch.context() as patched:
+        patched.setattr(atomic, "_write", Breaks(atomic._write, 3, OSError(28, "No space left on device")))
+        with pytest.raises(OSError, match="No space left"):
+            outputs.write_outputs(folder, two_drones(), has_figure=False)
+    assert contents(folder) == before
     outputs.write_outputs(folder, two_drones(), has_figure=False)
     outputs.write_outputs(tmp_path / "fresh", two_drones(), has_figure=False)
     assert contents(folder) == contents(tmp_path / "fresh")
@@ -212,6 +222,35 @@ def test_only_what_is_surely_ours_is_removed(tmp_path: Path) -> None:
         outputs.write_outputs(tmp_path, two_drones(), has_figure=False)
         assert sorted(left_behind(tmp_path)) == sorted([*kept, ".pondhop-fghijklm", in_use.name])
     assert not in_use.exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no locks to tell by")
+def test_a_folder_that_cannot_be_locked_is_taken_for_nobodys_leftover(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lock = atomic._lock
+    monkeypatch.setattr(atomic, "_lock", lambda _file: False)
+    with atomic._temporary_folder(tmp_path) as in_use:
+        monkeypatch.setattr(atomic, "_lock", lock)
+        atomic.write_all({tmp_path / "plan.json": "{}"})
+        assert left_behind(tmp_path) == [in_use.name]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no locks to tell by")
+def test_files_are_locked_for_which_locks_on_a_network_ask(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import fcntl
+
+    def flock_of_nfs(file: IO[bytes], operation: int) -> None:
+        if not file.writable():
+            raise OSError(9, "Bad file descriptor")
+        flock(file, operation)
+
+    flock = fcntl.flock
+    monkeypatch.setattr(fcntl, "flock", flock_of_nfs)
+    (tmp_path / ".pondhop-abcdefgh").mkdir()
+    (tmp_path / ".pondhop-abcdefgh" / "pondhop.txt").write_bytes(atomic._mark_text())
+    atomic.write_all({tmp_path / "plan.json": "{}"})
+    assert left_behind(tmp_path) == []
 
 
 @pytest.mark.parametrize("name", ["plan.json", "plan.svg", "missions/README.txt", "missions"])
@@ -293,6 +332,22 @@ def test_plans_are_kept_when_the_program_is_stopped(number: int, code: int, tmp_
     found = json.loads(plans.read_text())
     assert 3 <= len(found) < 500
     assert f"stopped; {len(found)} of 500 farms are planned" in told
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+def test_signals_held_back_are_each_delivered_once() -> None:
+    heard: list[int] = []
+    numbers = (signal.SIGHUP, signal.SIGTERM)
+    handlers = [signal.signal(number, lambda number, _frame: heard.append(number)) for number in numbers]
+    try:
+        with signals_held_back():
+            for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGHUP):
+                signal.raise_signal(number)
+            assert heard == []
+        assert heard == [signal.SIGHUP, signal.SIGTERM]
+    finally:
+        for number, handler in zip(numbers, handlers, strict=True):
+            signal.signal(number, handler)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")

@@ -328,7 +328,19 @@ def test_gaps_can_be_measured_from_plans_of_longer_runs(report: Report) -> None:
     assert tables.comparison.gap_percent(run) == pytest.approx(100.0)
     text = page.markdown(tables)
     assert "Gaps are to best known plans from a file, not from these runs; for" in text
+    num_left = tables.comparison.num_farms - 1
+    assert f"for {num_left} farms that it does not name" in text
+    others = {
+        other.digest: other for other in read_results(report.folder / "results.csv") if other.digest != run.digest
+    }
+    all_but_one = [BestPlan(o.set_name, o.farm, o.num_routes, 1.0, digest=o.digest) for o in others.values()]
+    assert "for 1 farm that it does not name" in page.markdown(Tables(report.measurements, BestKnown(all_but_one)))
     assert "Gaps are to the best plan that any of these runs has for a farm." in page.markdown(report.tables)
+
+
+def test_the_command_that_repeats_a_report_names_the_file_as_it_was_given() -> None:
+    named = scope.FULL.with_best_known(Path("my plans") / "best.csv")
+    assert named.options == " --best-known 'my plans/best.csv'"
 
 
 def _with_farm_budget(report: Report, farm_budget_s: float) -> Measurements:

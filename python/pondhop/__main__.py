@@ -7,7 +7,10 @@ from pondhop.documents.signals import answer_signals_at_once
 
 
 def main() -> None:
-    """Run the command line; from the first moment Ctrl-C and requests to end are answered in a line."""
+    """Run the command line; from pondhop's first line on Ctrl-C and requests to end are answered in a line.
+
+    Before that, while Python itself starts, it answers them in its own way.
+    """
     answer_signals_at_once()
     from pondhop import cli
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pondhop.errors import Fault, InvalidInput
 
@@ -50,10 +51,18 @@ class Arguments:
         """Whether a value is a number in some range; no comparison holds for one that is none."""
         if not isinstance(value, (int, float, Real)) or isinstance(value, bool):
             return self.refuse(name, value, action)
-        # Whole numbers may be beyond all floats, and compare with them all the same.
-        number = (
-            value if isinstance(value, (int, float)) else int(value) if isinstance(value, Integral) else float(value)
-        )
+        try:
+            # Whole numbers may be beyond all floats, and compare with them all the same.
+            number = (
+                value
+                if isinstance(value, (int, float))
+                else int(value)
+                if isinstance(value, Integral)
+                else float(value)
+            )
+        except OverflowError:
+            # As of a fraction.
+            return self.refuse(name, value, action)
         return least <= number <= most or self.refuse(name, value, action)
 
     def truth(self, name: str, value: object) -> bool:
@@ -75,11 +84,8 @@ class Arguments:
     def position(self, name: str, value: object, most_latitude_deg: float = 90.0) -> bool:
         """Whether a value is a longitude and a latitude in degrees."""
         action = f"give longitude -180..180, then latitude -{most_latitude_deg:g}..{most_latitude_deg:g}, in degrees"
-        try:
-            degrees = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError):
-            return self.refuse(name, value, action)
-        if degrees.shape != (2,) or np.ma.is_masked(value):
+        degrees = _reals(value)
+        if degrees is None or degrees.shape != (2,):
             return self.refuse(name, value, action)
         is_on_globe = abs(degrees[0]) <= 180.0 and abs(degrees[1]) <= most_latitude_deg
         return bool(is_on_globe) or self.refuse(name, value, action)
@@ -92,12 +98,10 @@ class Arguments:
     def positions(self, name: str, value: object) -> bool:
         """Whether a value is an array of positions, shape (n, 2)."""
         action = "give finite positions as an array of shape (n, 2)"
-        try:
-            places = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError):
+        places = _reals(value)
+        if places is None or places.ndim != 2 or places.shape[1] != 2 or len(places) == 0:
             return self.refuse(name, value, action)
-        is_good = places.ndim == 2 and places.shape[1] == 2 and len(places) > 0 and bool(np.isfinite(places).all())
-        return (is_good and not np.ma.is_masked(value)) or self.refuse(name, value, action)
+        return bool(np.isfinite(places).all()) or self.refuse(name, value, action)
 
     def indices(self, name: str, value: object, number: int) -> bool:
         """Whether a value is a sequence of indices below a number."""
@@ -142,11 +146,43 @@ def checked_path(name: str, value: object) -> Path:
     return Path(value)  # type: ignore[arg-type]
 
 
+def _reals(value: object) -> NDArray[np.float64] | None:
+    """Return real numbers as an array; `None` for all else, also for what lies below a mask and digits in a text."""
+    is_masked = np.ma.is_masked(value) or (isinstance(value, (list, tuple)) and any(map(np.ma.is_masked, value)))
+    if is_masked:
+        return None
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return array.astype(np.float64) if array.dtype.kind in "iuf" else None
+
+
 def shown(value: object) -> str:
-    """Return a value as a message shows it, cut where it is too long to read."""
+    """Return a value as a message shows it, on one line, cut where it is too long to read.
+
+    What has many values, and what cannot tell what it is, is told by its type. The core shows values by this, too.
+    """
+    if value is np.ma.masked:
+        return "masked"
     if isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) >= _MOST_DIGITS:
         return "a number of very many digits"
     if (isinstance(value, Iterable) and not isinstance(value, (str, bytes, list, tuple))) or callable(value):
-        return f"a {type(value).__name__}"
-    text = repr(value)
-    return text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 3]}..."
+        return _type_text(value)
+    if type(value).__repr__ is object.__repr__:
+        return _type_text(value)
+    try:
+        return shortened(repr(value))
+    except Exception:  # noqa: BLE001 - a class of the caller's may raise anything, and a list with it
+        return _type_text(value)
+
+
+def _type_text(value: object) -> str:
+    name = type(value).__name__
+    return f"{'an' if name[0] in 'aeiouAEIOU' or name == 'ndarray' else 'a'} {name}"
+
+
+def shortened(text: str) -> str:
+    """Return a text for a message: on one line, and cut where it is too long to read."""
+    line = " ".join(part.strip() for part in text.splitlines())
+    return line if len(line) <= _MAX_SHOWN else f"{line[: _MAX_SHOWN - 3]}..."

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pondhop import _core
-from pondhop.arguments import Arguments, checked_path
+from pondhop.arguments import Arguments, checked_path, shortened
 from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
 
@@ -247,7 +247,11 @@ class _FarmChecks:
             boundary = self._positions(f"{path}.boundary", value["boundary"], minimum=3)
         spacing = value.get("spacing")
         if spacing is not None and not (_is_coordinate(spacing) and spacing > 0):
-            self._add(f"{path}.spacing", f"the spacing is {_shown(spacing)}", "give a positive number or leave it out")
+            self._add(
+                f"{path}.spacing",
+                f"the spacing is {shortened(json.dumps(spacing))}",
+                "give a positive number or leave it out",
+            )
             spacing = None
         if depot is None or ponds is None:
             return None
@@ -264,7 +268,11 @@ class _FarmChecks:
         for index, value in enumerate(values):
             if not (isinstance(value, Sequence) and len(value) == 2 and all(map(_is_coordinate, value))):
                 place = path if are_one else f"{path}[{index}]"
-                self._add(place, f"this is not a position: {_shown(value)}", "give [x, y], two numbers of at most 1e9")
+                self._add(
+                    place,
+                    f"this is not a position: {shortened(json.dumps(value))}",
+                    "give [x, y], two numbers of at most 1e9",
+                )
         return np.array(values, dtype=np.float64) if len(self.faults) == num_faults else None
 
     def _add(self, path: str, message: str, action: str) -> None:
@@ -273,12 +281,6 @@ class _FarmChecks:
 
 def _is_coordinate(value: object) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= MAX_COORDINATE
-
-
-def _shown(value: object) -> str:
-    """Return the value as JSON, cut where it is too long to read."""
-    text = json.dumps(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 _OTHER_WEIGHTS = {

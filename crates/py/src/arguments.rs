@@ -9,6 +9,7 @@ use pondhop_core::problem::Layer;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyFloat, PyInt, PyList, PyTuple};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// A number of any real type, or what is shown of something else. A whole number beyond all floats is infinite.
@@ -32,32 +33,64 @@ impl<'py> FromPyObject<'_, 'py> for Real {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let py = value.py();
-        let is_plain = value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>();
-        if !is_plain && has_masked(&value)? {
-            return Ok(Self(Err("masked".into())));
+        if !is_number(&value, "Real")? {
+            return Ok(Self(Err(shown(&value)?)));
         }
         match value.extract::<f64>() {
             Ok(number) => Ok(Self(Ok(number))),
-            Err(error) if error.is_instance_of::<PyOverflowError>(py) => {
+            Err(error) if error.is_instance_of::<PyOverflowError>(value.py()) => {
                 Ok(Self(Ok(if value.lt(0)? { f64::NEG_INFINITY } else { f64::INFINITY })))
             }
-            Err(error) if error.is_instance_of::<PyTypeError>(py) => Ok(Self(Err(shortened(&value)))),
             Err(error) => Err(error),
         }
     }
 }
 
-/// A seed of random numbers, or what is shown of something else.
-pub struct Seed(Result<u64, String>);
+/// A whole number of any type from 0 on, or what is shown of something else.
+pub struct Whole(Result<u64, String>);
 
-impl Seed {
+impl Whole {
     pub const fn of(number: u64) -> Self {
         Self(Ok(number))
     }
 
-    pub fn number(self) -> PyResult<u64> {
-        self.0.map_err(|shown| fault("seed", format!("it is {shown}"), "give a whole number from 0 to 2^64 - 1"))
+    /// The number; the least possible, with a fault, if it is none or out of range.
+    pub fn number(self, faults: &mut Faults, name: &str, possible: &RangeInclusive<u64>, action: &str) -> u64 {
+        let number = self.0.and_then(|number| possible.contains(&number).then_some(number).ok_or(number.to_string()));
+        number.unwrap_or_else(|shown| {
+            faults.add(name, format!("it is {shown}"), action);
+            *possible.start()
+        })
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Whole {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        // Numbers below 0 and beyond 64 bits are out of every range.
+        let number = if is_number(&value, "Integral")? { value.extract().ok() } else { None };
+        number.map_or_else(|| Ok(Self(Err(shown(&value)?))), |number| Ok(Self(Ok(number))))
+    }
+}
+
+/// A seed of random numbers, or what is shown of something else.
+pub struct Seed(Whole);
+
+impl Seed {
+    pub const fn of(number: u64) -> Self {
+        Self(Whole::of(number))
+    }
+
+    pub fn number(self, faults: &mut Faults) -> u64 {
+        self.0.number(faults, "seed", &(0..=u64::MAX), "give a whole number from 0 to 2^64 - 1")
+    }
+
+    /// The number, where nothing else can be at fault.
+    pub fn checked(self) -> PyResult<u64> {
+        let mut faults = Faults::default();
+        let number = self.number(&mut faults);
+        checked(faults, number)
     }
 }
 
@@ -65,8 +98,44 @@ impl<'py> FromPyObject<'_, 'py> for Seed {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let number = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
-        Ok(Self(number.ok_or_else(|| shortened(&value))))
+        value.extract().map(Self)
+    }
+}
+
+/// Whether a value is a number of some kind of Python's `numbers`, which numpy's are, too. Truth values count as none.
+fn is_number(value: &Bound<'_, PyAny>, kind: &str) -> PyResult<bool> {
+    if value.is_instance_of::<PyBool>() {
+        return Ok(false);
+    }
+    if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
+        return Ok(kind == "Real" || value.is_exact_instance_of::<PyInt>());
+    }
+    value.is_instance(&value.py().import("numbers")?.getattr(kind)?)
+}
+
+/// A value that is to be one of some words; `Word::default()` where none is given.
+#[derive(Default)]
+pub struct Word<'py>(Option<Bound<'py, PyAny>>);
+
+impl Word<'_> {
+    /// What the word stands for. The first of the possible ones is the default, and stands, with a fault, for all others.
+    pub fn meaning<T: Copy>(self, faults: &mut Faults, name: &str, possible: &[(&str, T)]) -> PyResult<T> {
+        let Some(value) = self.0 else { return Ok(possible[0].1) };
+        let word = value.extract::<String>().ok();
+        if let Some((_, meaning)) = possible.iter().find(|(known, _)| word.as_deref() == Some(known)) {
+            return Ok(*meaning);
+        }
+        let words = possible.iter().map(|(known, _)| *known).collect::<Vec<&str>>().join(", ");
+        faults.add(name, format!("it is {}", shown(&value)?), &format!("choose one of: {words}"));
+        Ok(possible[0].1)
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Word<'py> {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self(Some(value.to_owned())))
     }
 }
 
@@ -79,45 +148,36 @@ impl<'py> FromPyObject<'_, 'py> for Task {
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         match value.cast::<Problem>() {
             Ok(problem) => Ok(Self(Arc::clone(&problem.get().inner))),
-            Err(_) => Err(fault("problem", format!("it is {}", shortened(&value)), "give a pondhop.Problem")),
+            Err(_) => {
+                let mut faults = Faults::default();
+                let action = "give a pondhop.Problem, as farm.to_problem returns it";
+                faults.add("problem", format!("it is {}", shown(&value)?), action);
+                Err(checked(faults, ()).expect_err("a fault was added"))
+            }
         }
     }
 }
 
-/// An error with a single fault.
-fn fault(name: &str, message: String, action: &str) -> PyErr {
-    let mut faults = Faults::default();
-    faults.add(name, message, action);
-    faults.into_result(()).map_or_else(|error| to_python(&error), |()| unreachable!("a fault was added"))
+/// A value, if nothing was wrong.
+pub fn checked<T>(faults: Faults, value: T) -> PyResult<T> {
+    faults.into_result(value).map_err(|error| to_python(&error))
 }
 
 /// A count from 0, or the fault that it is none.
-pub fn count(faults: &mut Faults, name: &str, value: &Bound<'_, PyAny>) -> usize {
-    let number = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
-    number.unwrap_or_else(|| {
-        faults.add(name, format!("it is {}", shortened(value)), "give a whole number, 0 or more");
-        0
-    })
+pub fn count(faults: &mut Faults, name: &str, value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let possible = 0..=usize::MAX as u64;
+    Ok(value.extract::<Whole>()?.number(faults, name, &possible, "give a whole number, 0 or more") as usize)
 }
 
 /// A whole number of drones. The fault that there is none is left to the core.
 pub fn num_drones(faults: &mut Faults, value: &Bound<'_, PyAny>) -> PyResult<usize> {
-    let action = "give a whole number of drones, at least one";
-    if value.is_instance_of::<PyBool>() {
-        faults.add("num_drones", format!("it is {}", shortened(value)), action);
-        return Ok(1);
-    }
-    match value.extract::<usize>() {
-        Ok(number) => Ok(number),
-        Err(error)
-            if error.is_instance_of::<PyTypeError>(value.py())
-                || error.is_instance_of::<PyOverflowError>(value.py()) =>
-        {
-            faults.add("num_drones", format!("it is {}", shortened(value)), action);
-            Ok(1)
-        }
-        Err(error) => Err(error),
-    }
+    Ok(value.extract::<Whole>()?.0.map_or_else(
+        |shown| {
+            faults.add("num_drones", format!("it is {shown}"), "give a whole number of drones, at least one");
+            1
+        },
+        |number| number as usize,
+    ))
 }
 
 /// Positions of shape (n, 2); none if the array is at fault.
@@ -203,7 +263,7 @@ pub fn routes(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<usize>>>
             match pond.extract::<usize>() {
                 Ok(index) => indices.push(index),
                 Err(_) => {
-                    let message = format!("there is no pond {}", shortened(&pond));
+                    let message = format!("there is no pond {}", shown(&pond)?);
                     faults.add(format!("{name}[{route}][{place}]"), message, "give the index of a pond, from 0 on");
                 }
             }
@@ -217,7 +277,7 @@ fn items<'py>(faults: &mut Faults, name: &str, value: &Bound<'py, PyAny>) -> PyR
     match value.try_iter() {
         Ok(items) => items.collect(),
         Err(_) => {
-            faults.add(name, format!("it is {}", shortened(value)), "give a list of pond indices for each route");
+            faults.add(name, format!("it is {}", shown(value)?), "give a list of pond indices for each route");
             Ok(Vec::new())
         }
     }
@@ -273,12 +333,8 @@ fn add_shape_fault(faults: &mut Faults, name: &str, shape: &[usize], action: &st
     faults.add(name, format!("it has shape ({sizes}{comma})"), action);
 }
 
-/// What is shown of a value in a message.
-pub fn shortened(value: &Bound<'_, PyAny>) -> String {
-    const MAX_SHOWN: usize = 40;
-    // Numbers of more digits than Python converts have no representation.
-    let Ok(text) = value.repr() else { return "a number of very many digits".into() };
-    let text = text.to_string();
-    let shown: String = text.chars().take(MAX_SHOWN).collect();
-    if shown.len() < text.len() { format!("{shown}...") } else { shown }
+/// What is shown of a value in a message. Python's own checks show it by the same function, so that a wrong value is told
+/// alike wherever it comes to light.
+pub fn shown(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    value.py().import("pondhop.arguments")?.call_method1("shown", (value,))?.extract()
 }

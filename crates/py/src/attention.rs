@@ -116,7 +116,7 @@ impl AttentionModel {
         num_samples: usize,
         seed: Seed,
     ) -> PyResult<(Vec<Vec<usize>>, f64)> {
-        let seed = seed.number()?;
+        let seed = seed.checked()?;
         let decoding = match decoding {
             "greedy" => Decoding::Greedy,
             "symmetries" => Decoding::Symmetries,

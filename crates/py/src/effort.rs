@@ -1,7 +1,9 @@
 //! `pondhop_core::effort`: planning for a time, watched by Python.
 
+use crate::arguments::{Real, Whole, shown};
 use pondhop_core::effort::{Clock, Progress, Watch};
-use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pondhop_core::error::Faults;
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
@@ -10,11 +12,32 @@ use std::time::{Duration, Instant};
 /// Time between two looks at Python's signals and two calls of the progress callback.
 const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
-pub fn check_limits(time_limit_s: Option<f64>, iterations: Option<u64>) -> PyResult<()> {
-    if time_limit_s.is_some_and(|limit| limit.is_nan() || limit <= 0.0) || iterations == Some(0) {
-        return Err(PyValueError::new_err("time_limit_s and iterations are above 0"));
+/// A time limit and a number of iterations, as they were given.
+pub fn limits(
+    faults: &mut Faults,
+    time_limit_s: Option<Real>,
+    iterations: Option<Whole>,
+) -> (Option<f64>, Option<u64>) {
+    let seconds = time_limit_s.map(|limit| {
+        let seconds = limit.number(faults, "time_limit_s", 1.0);
+        if seconds.is_nan() || seconds <= 0.0 {
+            faults.add("time_limit_s", format!("it is {seconds}"), "give seconds above 0, or leave it out");
+        }
+        seconds
+    });
+    let action = "give a whole number from 1 to 2^64 - 1, or leave it out";
+    (seconds, iterations.map(|number| number.number(faults, "iterations", &(1..=u64::MAX), action)))
+}
+
+/// What is called with the progress, if anything.
+pub fn callback(faults: &mut Faults, progress: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Py<PyAny>>> {
+    let Some(progress) = progress else { return Ok(None) };
+    if !progress.is_callable() {
+        let action =
+            "give a function of the longest route, the iterations and the share of the effort, or leave it out";
+        faults.add("progress", format!("it is {}", shown(progress)?), action);
     }
-    Ok(())
+    Ok(Some(progress.clone().unbind()))
 }
 
 /// Plans without the GIL. Returns what was planned, the seconds since `begin`, and whether Ctrl-C ended the planner; an error is

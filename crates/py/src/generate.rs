@@ -1,10 +1,11 @@
 //! `pondhop_core::generate`.
 
+use crate::arguments::{Seed, Whole, Word, checked};
 use crate::error::to_python;
 use numpy::{PyArray1, PyArray2, ToPyArray};
+use pondhop_core::error::Faults;
 use pondhop_core::generate::Variant;
 use pondhop_core::geometry::Point;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 type Farm<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, f64);
@@ -28,17 +29,17 @@ type Farm<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'p
 /// Raises
 /// ------
 /// InvalidInput
-///     If the number of ponds is out of range.
-/// ValueError
-///     If there is no such variant.
+///     With every argument that is out of range.
 #[pyfunction]
-#[pyo3(signature = (num_ponds, seed, variant="authors"))]
-pub fn generate<'py>(py: Python<'py>, num_ponds: usize, seed: u64, variant: &str) -> PyResult<Farm<'py>> {
-    let variant = match variant {
-        "authors" => Variant::Authors,
-        "paper" => Variant::Paper,
-        _ => return Err(PyValueError::new_err(format!("variant is 'authors' or 'paper', not {variant:?}"))),
-    };
+#[pyo3(signature = (num_ponds, seed, variant=Word::default()))]
+pub fn generate<'py>(py: Python<'py>, num_ponds: Whole, seed: Seed, variant: Word<'py>) -> PyResult<Farm<'py>> {
+    let mut faults = Faults::default();
+    let action = "give a whole number of ponds";
+    let num_ponds = num_ponds.number(&mut faults, "num_ponds", &(0..=usize::MAX as u64), action) as usize;
+    let seed = seed.number(&mut faults);
+    let variants = [("authors", Variant::Authors), ("paper", Variant::Paper)];
+    let variant = variant.meaning(&mut faults, "variant", &variants)?;
+    checked(faults, ())?;
     let farm =
         py.detach(|| pondhop_core::generate::generate(num_ponds, variant, seed)).map_err(|error| to_python(&error))?;
     let depot = [farm.depot.x, farm.depot.y].to_pyarray(py);

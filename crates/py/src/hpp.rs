@@ -25,7 +25,7 @@ use std::time::Instant;
 #[pyfunction]
 #[pyo3(signature = (problem, *, seed=Seed::of(1)))]
 pub fn hpp(py: Python<'_>, problem: Task, seed: Seed) -> PyResult<(Vec<Vec<usize>>, f64)> {
-    let seed = seed.number()?;
+    let seed = seed.checked()?;
     Ok(py.detach(|| {
         let start = Instant::now();
         let routes = pondhop_core::hpp::plan(&problem.0, seed);
@@ -53,7 +53,7 @@ pub fn hpp_clusters<'py>(
     problem: Task,
     seed: Seed,
 ) -> PyResult<Vec<(Vec<usize>, Vec<usize>, Bound<'py, PyArray2<f64>>)>> {
-    let seed = seed.number()?;
+    let seed = seed.checked()?;
     let plan = py.detach(|| pondhop_core::hpp::plan_clusters(&problem.0, seed));
     plan.clusters
         .into_iter()

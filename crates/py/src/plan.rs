@@ -1,6 +1,6 @@
 //! `pondhop_core::plan`.
 
-use crate::arguments::{Real, count, shortened};
+use crate::arguments::{Real, count, shown};
 use crate::error::{InvalidInput, to_python};
 use crate::values::{hash_of, table};
 use numpy::{PyArray1, PyArray2, ToPyArray};
@@ -54,8 +54,8 @@ impl Violation {
     ) -> PyResult<Self> {
         use pondhop_core::plan::Violation as Kind;
         let mut faults = Faults::default();
-        let pond = pond.map(|pond| count(&mut faults, "pond", pond));
-        let route = route.map(|route| count(&mut faults, "route", route));
+        let pond = pond.map(|pond| count(&mut faults, "pond", pond)).transpose()?;
+        let route = route.map(|route| count(&mut faults, "route", route)).transpose()?;
         let value = value.map(|value| value.number(&mut faults, "value", 0.0));
         let limit = limit.map(|limit| limit.number(&mut faults, "limit", 0.0));
         faults.into_result(()).map_err(|error| to_python(&error))?;
@@ -79,7 +79,7 @@ impl Violation {
             _ => {
                 let message = "there is no violation of this kind with these fields";
                 let action = "take violations from a plan";
-                return Err(InvalidInput::new_err((vec![(format!("kind {}", shortened(kind)), message, action)],)));
+                return Err(InvalidInput::new_err((vec![(format!("kind {}", shown(kind)?), message, action)],)));
             }
         };
         Ok(Self { inner })

@@ -257,7 +257,8 @@ impl Problem {
             leg_stop_duration: leg_stop_s.number(&mut faults, "leg_stop_s", 0.0),
             takeoff_duration: takeoff_s.number(&mut faults, "takeoff_s", 0.0),
             way_home,
-            energy: energy.map_or(pondhop_core::problem::Energy::UNKNOWN, |energy| inner_energy(&mut faults, energy)),
+            energy: energy
+                .map_or(Ok(pondhop_core::problem::Energy::UNKNOWN), |energy| inner_energy(&mut faults, energy))?,
             max_length: max_length_m.number(&mut faults, "max_length_m", f64::INFINITY),
             max_duration: max_duration_s.number(&mut faults, "max_duration_s", f64::INFINITY),
         };
@@ -407,14 +408,12 @@ impl Problem {
     }
 }
 
-fn inner_energy(faults: &mut Faults, value: &Bound<'_, PyAny>) -> pondhop_core::problem::Energy {
-    value.extract::<Energy>().map_or_else(
-        |_| {
-            faults.add("energy", format!("it is {}", arguments::shortened(value)), "give a pondhop.Energy");
-            pondhop_core::problem::Energy::UNKNOWN
-        },
-        |energy| energy.inner,
-    )
+fn inner_energy(faults: &mut Faults, value: &Bound<'_, PyAny>) -> PyResult<pondhop_core::problem::Energy> {
+    if let Ok(energy) = value.extract::<Energy>() {
+        return Ok(energy.inner);
+    }
+    faults.add("energy", format!("it is {}", arguments::shown(value)?), "give a pondhop.Energy");
+    Ok(pondhop_core::problem::Energy::UNKNOWN)
 }
 
 impl Problem {

@@ -1,12 +1,12 @@
 //! `pondhop_core::search`.
 
 use crate::arguments;
-use crate::arguments::{Seed, Task};
-use crate::effort::{check_limits, watched};
+use crate::arguments::{Real, Seed, Task, Whole, Word, checked};
+use crate::effort::{callback, limits, watched};
 use crate::error::to_python;
+use pondhop_core::error::Faults;
 use pondhop_core::plan::Violation;
 use pondhop_core::search::{Goal, Options, solve};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::time::Instant;
 
@@ -51,33 +51,41 @@ use std::time::Instant;
 /// Raises
 /// ------
 /// InvalidInput
-///     If `start` breaks a rule.
-/// ValueError
-///     If an option has no meaning.
+///     With every argument that has no meaning, or if `start` breaks a rule other than a limit.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, threads=1, slack=0.0, objective="max",
+#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, threads=Whole::of(1),
+                    slack=Real::of(0.0), objective=Word::default(),
                     start=None, progress=None))]
 #[allow(clippy::too_many_arguments, clippy::needless_pass_by_value)]
 pub fn search(
     py: Python<'_>,
     problem: Task,
     seed: Seed,
-    time_limit_s: Option<f64>,
-    iterations: Option<u64>,
-    threads: usize,
-    slack: f64,
-    objective: &str,
+    time_limit_s: Option<Real>,
+    iterations: Option<Whole>,
+    threads: Whole,
+    slack: Real,
+    objective: Word<'_>,
     start: Option<&Bound<'_, PyAny>>,
-    progress: Option<Py<PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<Vec<usize>>, f64, u64, bool)> {
     let begin = Instant::now();
-    let seed = seed.number()?;
-    let goal = match objective {
-        "max" => Goal::Max,
-        "total" => Goal::Total,
-        _ => return Err(PyValueError::new_err(format!("objective is 'max' or 'total', not {objective:?}"))),
-    };
-    check_effort(time_limit_s, iterations, threads, slack)?;
+    let mut faults = Faults::default();
+    let seed = seed.number(&mut faults);
+    let (time_limit_s, iterations) = limits(&mut faults, time_limit_s, iterations);
+    if time_limit_s.is_none() && iterations.is_none() {
+        faults.add("time_limit_s", "there is no limit to the effort", "give time_limit_s or iterations");
+    }
+    let action = format!("give the cores there are, 1 to {MAX_THREADS}");
+    let num_threads = threads.number(&mut faults, "threads", &(1..=MAX_THREADS), &action) as usize;
+    let slack = slack.number(&mut faults, "slack", 0.0);
+    if !(slack.is_finite() && slack >= 0.0) {
+        faults.add("slack", format!("it is {slack}"), "give a share, 0 or more, as in 0.015");
+    }
+    let goals = [("max", Goal::Max), ("total", Goal::Total)];
+    let goal = objective.meaning(&mut faults, "objective", &goals)?;
+    let progress = callback(&mut faults, progress)?;
+    checked(faults, ())?;
     let start = start.map(|routes| arguments::routes("start", routes)).transpose()?;
     if let Some(routes) = &start {
         check_start(&problem, routes)?;
@@ -88,7 +96,7 @@ pub fn search(
             max_iterations: iterations,
             clock,
             watch,
-            num_threads: threads,
+            num_threads,
             goal,
             slack,
             start: start.as_deref(),
@@ -98,30 +106,17 @@ pub fn search(
     Ok((outcome.routes, elapsed_s, outcome.num_iterations, is_interrupted))
 }
 
-fn check_effort(time_limit_s: Option<f64>, iterations: Option<u64>, threads: usize, slack: f64) -> PyResult<()> {
-    check_limits(time_limit_s, iterations)?;
-    let complaint = if time_limit_s.is_none() && iterations.is_none() {
-        "give time_limit_s or iterations"
-    } else if !(1..=MAX_THREADS).contains(&threads) {
-        "threads is 1 to 1024"
-    } else if !(slack.is_finite() && slack >= 0.0) {
-        "slack is 0 or more"
-    } else {
-        return Ok(());
-    };
-    Err(PyValueError::new_err(complaint))
-}
-
 /// Beyond this a mistyped number would exhaust the machine.
-const MAX_THREADS: usize = 1024;
+const MAX_THREADS: u64 = 1024;
 
 fn check_start(problem: &Task, routes: &[Vec<usize>]) -> PyResult<()> {
     let plan = pondhop_core::evaluate::evaluate(&problem.0, routes).map_err(|error| to_python(&error))?;
     let is_limit = |violation: &&Violation| {
         matches!(violation, Violation::TooLong { .. } | Violation::TooSlow { .. } | Violation::TooMuchEnergy { .. })
     };
-    match plan.violations.iter().find(|violation| !is_limit(violation)) {
-        Some(violation) => Err(PyValueError::new_err(format!("start: {violation}"))),
-        None => Ok(()),
+    let mut faults = Faults::default();
+    for violation in plan.violations.iter().filter(|violation| !is_limit(violation)) {
+        faults.add("start", violation.to_string(), "give a plan that only time or length limits may break");
     }
+    checked(faults, ())
 }

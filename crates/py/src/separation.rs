@@ -40,8 +40,8 @@ impl Separation {
         let mut faults = Faults::default();
         let inner = pondhop_core::separation::Separation {
             overlap: overlap.number(&mut faults, "overlap", 0.0),
-            num_crossings: count(&mut faults, "num_crossings", num_crossings),
-            num_depot_leg_crossings: count(&mut faults, "num_depot_leg_crossings", num_depot_leg_crossings),
+            num_crossings: count(&mut faults, "num_crossings", num_crossings)?,
+            num_depot_leg_crossings: count(&mut faults, "num_depot_leg_crossings", num_depot_leg_crossings)?,
         };
         faults.into_result(Self { inner }).map_err(|error| to_python(&error))
     }

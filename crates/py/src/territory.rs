@@ -1,7 +1,8 @@
 //! `pondhop_core::territory`.
 
-use crate::arguments::{Seed, Task};
-use crate::effort::{check_limits, watched};
+use crate::arguments::{Real, Seed, Task, Whole, checked};
+use crate::effort::{callback, limits, watched};
+use pondhop_core::error::Faults;
 use pondhop_core::territory::{Options, plan};
 use pyo3::prelude::*;
 use std::time::Instant;
@@ -32,21 +33,24 @@ use std::time::Instant;
 ///
 /// Raises
 /// ------
-/// ValueError
-///     If an option has no meaning.
+/// InvalidInput
+///     With every argument that has no meaning.
 #[pyfunction]
 #[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, progress=None))]
 pub fn territory(
     py: Python<'_>,
     problem: Task,
     seed: Seed,
-    time_limit_s: Option<f64>,
-    iterations: Option<u64>,
-    progress: Option<Py<PyAny>>,
+    time_limit_s: Option<Real>,
+    iterations: Option<Whole>,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<Vec<usize>>, f64, bool)> {
     let begin = Instant::now();
-    let seed = seed.number()?;
-    check_limits(time_limit_s, iterations)?;
+    let mut faults = Faults::default();
+    let seed = seed.number(&mut faults);
+    let (time_limit_s, iterations) = limits(&mut faults, time_limit_s, iterations);
+    let progress = callback(&mut faults, progress)?;
+    checked(faults, ())?;
     watched(py, begin, time_limit_s, progress, |clock, watch| {
         plan(&problem.0, &Options { seed, max_iterations: iterations, clock, watch })
     })

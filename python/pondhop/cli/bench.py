@@ -8,7 +8,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
@@ -217,7 +217,7 @@ def paper(
     if budget is not None:
         scope = scope.with_budget(budget)
     if best_known is not None:
-        scope = replace(scope, options=f"{scope.options} --best-known {best_known.name}")
+        scope = scope.with_best_known(best_known)
     faults: list[Fault] = []
     known = _best_known([best_known] if best_known is not None else [], faults)
     own = []

@@ -1,7 +1,6 @@
 """The command line: ``pondhop COMMAND --help`` teaches each command.
 
-Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with ``--require-feasible``, breaks a rule),
-1 a bug, 130 stopped with Ctrl-C, 143 asked to end.
+Exit codes stand in its help, those of signals in `pondhop.documents.signals`.
 Results go to stdout, everything else to stderr. Heavy packages are imported where they are used, because
 ``pondhop plan`` should take no longer than planning does.
 """
@@ -92,7 +91,7 @@ def _pondhop(
     - `pondhop plan farm.geojson --drones 5 -o tonight`
 
     Exit codes: 0 done, 2 invalid input, 3 a plan that cannot be flown (or, with `--require-feasible`, breaks a rule),
-    1 a bug, 130 stopped with Ctrl-C, 143 asked to end.
+    1 a bug, 130 stopped with Ctrl-C, 143 asked to end, 129 its terminal was closed.
     """
 
 

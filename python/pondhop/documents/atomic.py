@@ -217,8 +217,11 @@ def _swap(folder: Path, staging: Path, old: list[str], new: list[str]) -> None:
 
 @contextmanager
 def _temporary_folder(parent: Path) -> Iterator[Path]:
-    """Make a folder in another one, and remove it, whatever comes; so are those that a killed program left there."""
-    _remove_left_behind(parent)
+    """Make a folder in another one, and remove it, whatever comes.
+
+    So are those that a killed program left there, but not before all went well: they may hold the only copies of files
+    that were there before.
+    """
     ends = ExitStack()
     try:
         with signals_held_back(), _named(parent):
@@ -226,20 +229,23 @@ def _temporary_folder(parent: Path) -> Iterator[Path]:
             ends.callback(shutil.rmtree, folder, ignore_errors=True)
             mark = ends.enter_context((folder / _MARK).open("wb", buffering=0))
             # Locked before it says whose it is: whoever reads that can tell that we still use the folder.
-            _lock(mark)
-            mark.write(_mark_text())
+            if _lock(mark):
+                mark.write(_mark_text())
         yield folder
+        _remove_left_behind(parent, folder)
     finally:
         with signals_held_back():
             ends.close()
 
 
-def _remove_left_behind(parent: Path) -> None:
-    """Remove temporary folders that a killed program left in a folder; any that may be another's stays."""
+def _remove_left_behind(parent: Path, in_use: Path) -> None:
+    """Remove temporary folders that a killed program left in a folder; ours, and any that may be another's, stay."""
     with suppress(OSError):
         for entry in list(os.scandir(parent)):
-            if _STAGING_NAME.fullmatch(entry.name) and entry.is_dir(follow_symlinks=False):
-                with suppress(OSError), (Path(entry.path) / _MARK).open("rb", buffering=0) as mark:
+            is_other = entry.name != in_use.name and _STAGING_NAME.fullmatch(entry.name)
+            if is_other and entry.is_dir(follow_symlinks=False):
+                # For writing, though nothing is written: network file systems lock no file that is open for reading.
+                with suppress(OSError), (Path(entry.path) / _MARK).open("r+b", buffering=0) as mark:
                     if _is_left_behind(Path(entry.path), mark):
                         shutil.rmtree(entry.path, ignore_errors=True)
 

@@ -15,7 +15,10 @@ STOPPING_SIGNALS = tuple(
 """What stops a program: Ctrl-C, `kill` and the end of a session, a terminal that is closed."""
 
 SIGNALLED = 128
-"""A program that a signal stopped ends with this and the signal's number: 130 for Ctrl-C, 143 for a request to end."""
+"""A program that a signal stopped ends with this and the signal's number.
+
+130 for Ctrl-C, 143 for a request to end, 129 for a terminal that was closed.
+"""
 
 _STDERR = 2
 
@@ -96,8 +99,9 @@ def _heeded() -> list[int]:
 
 
 def _deliver(numbers: list[int]) -> None:
-    # The first one stops the program, and the user need not stop it twice.
-    for number in numbers[:1]:
+    # One that stops the program raises, and the user need not stop it twice; one that a program of the user's heeds in
+    # another way, as by reading its settings again, must not swallow those after it.
+    for number in dict.fromkeys(numbers):
         signal.raise_signal(number)
 
 

@@ -47,9 +47,6 @@ class Layers:
 def layers_of(fleet: Fleet, num_ponds: int, *, are_stacked: bool = False) -> Layers:
     """Return the layers of a round over so many ponds: no more drones fly than there are ponds.
 
-    The lowest drone comes home at ``return_height_m``, but not below the transit height: an autopilot does not descend
-    for the way home.
-
     Parameters
     ----------
     are_stacked
@@ -65,7 +62,7 @@ def layers_of(fleet: Fleet, num_ponds: int, *, are_stacked: bool = False) -> Lay
     arguments.truth("are_stacked", are_stacked)
     arguments.check()
     num_flying = fleet.num_flying(num_ponds)
-    base_m = max(fleet.return_height_m, fleet.transit_height_m)
+    base_m = lowest_way_home_m(fleet.return_height_m, fleet.transit_height_m)
     num_above = num_flying - 1
     spacing_m = fleet.layer_spacing_m
     if spacing_m is None:
@@ -76,11 +73,22 @@ def layers_of(fleet: Fleet, num_ponds: int, *, are_stacked: bool = False) -> Lay
     if are_stacked:
         base_m = max(base_m, fleet.transit_height_m + num_flying * spacing_m)
     if num_above and base_m + num_above * spacing_m > MAX_HEIGHT_M + 1e-9:
-        num_fitting = 1 + max(0, int((MAX_HEIGHT_M - base_m) / spacing_m))
         message = (
-            f"{num_flying} drones fly, but above {base_m:g} m there is room for {num_fitting} "
-            f"{'layer' if num_fitting == 1 else 'layers'} of {spacing_m:g} m below {MAX_HEIGHT_M} m"
+            f"{num_flying} drones fly, and come home {spacing_m:g} m above each other: "
+            f"the highest at {base_m + num_above * spacing_m:g} m"
         )
-        action = f"plan for {num_fitting}, or fly lower: transit_height_m, return_height_m"
+        action = f"{layers_remedy(base_m, spacing_m)}: nothing may fly above {MAX_HEIGHT_M} m"
         raise InvalidInput([Fault("num_drones", message, action)])
     return Layers(fleet.transit_height_m, base_m, spacing_m)
+
+
+def lowest_way_home_m(return_height_m: float, transit_height_m: float) -> float:
+    """Return the height at which the lowest drone comes home: an autopilot does not descend for the way home."""
+    return max(return_height_m, transit_height_m)
+
+
+def layers_remedy(lowest_m: float, spacing_m: float) -> str:
+    """Return what to do where the highest of some drones would come home above the highest allowed flight."""
+    num_fitting = 1 + max(0, int((MAX_HEIGHT_M - lowest_m) / spacing_m))
+    drones = "one drone" if num_fitting == 1 else f"at most {num_fitting} drones, {spacing_m:g} m apart"
+    return f"fly {drones}, or lower (transit_height_m, return_height_m)"

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Collection, Mapping
+from dataclasses import MISSING, dataclass, field, fields
 from functools import cached_property
-from typing import Literal, get_args
+from numbers import Integral, Real
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from pondhop._core import Energy
-from pondhop.arguments import Arguments, shown
-from pondhop.errors import Fault, InvalidInput
+from pondhop.arguments import Arguments
+from pondhop.errors import Fault
 from pondhop.fleet import times
-from pondhop.fleet.layers import LEAST_SPACING_M, Layers, layers_of
+from pondhop.fleet.layers import LEAST_SPACING_M, Layers, layers_of, layers_remedy, lowest_way_home_m
 from pondhop.fleet.settings import DECISIVE, MAX_HEIGHT_M, NUMBERS
 from pondhop.units import JOULES_PER_WATT_HOUR
 
@@ -120,17 +121,12 @@ class Fleet:
         for name, value in values.items():
             object.__setattr__(self, name, value)
         optional = {item.name for item in fields(self) if item.default is None}
-        faults = setting_faults(
+        arguments = Arguments()
+        arguments.faults += fleet_faults(
             {name: value for name, value in values.items() if value is not None or name not in optional}
         )
-        names = [item.name for item in fields(self) if item.name != "assumptions"]
-        arguments = Arguments()
-        arguments.all_of("assumptions", self.assumptions, names)
-        faults += arguments.faults
-        if not faults:
-            faults = _combined_faults(self)
-        if faults:
-            raise InvalidInput(faults)
+        arguments.all_of("assumptions", self.assumptions, list(values))
+        arguments.check()
         defaults = {item.name: item.default for item in fields(self)}
         still_default = tuple(name for name in self.assumptions if getattr(self, name) == defaults[name])
         object.__setattr__(self, "assumptions", still_default)
@@ -243,60 +239,77 @@ def _check_time(service_s: object) -> None:
 
 
 def _plain(value: object) -> object:
-    """Return a number of numpy as one of Python, with the digits it is written with: a float32 of 0.1 is 0.1."""
+    """Return a number of numpy or the like as one of Python, with the digits it is written with."""
     if isinstance(value, np.bool_):
         return bool(value)
-    if isinstance(value, np.integer):
-        return int(value)
     if isinstance(value, np.floating):
+        # A float32 of 0.1 is 0.1.
         return float(str(value))
-    return value
+    if isinstance(value, (int, float)) or not isinstance(value, Real):
+        return value
+    try:
+        return int(value) if isinstance(value, Integral) else float(value)
+    except OverflowError:
+        # No fleet has such a number, and the checks say so.
+        return value
+
+
+def fleet_faults(settings: Mapping[str, object]) -> list[Fault]:
+    """Return all that is wrong with the settings of a fleet; those that are not given have their defaults."""
+    faults = setting_faults(settings)
+    return faults + _combined_faults(settings, {fault.path for fault in faults})
 
 
 def setting_faults(settings: Mapping[str, object]) -> list[Fault]:
     """Return what is wrong with settings, each for itself."""
-    faults = []
+    arguments = Arguments()
     for name, value in settings.items():
         if name == "sampling":
-            if not isinstance(value, str) or value not in get_args(SamplingStyle):
-                action = f"use one of {', '.join(get_args(SamplingStyle))}"
-                faults.append(Fault(name, f"{shown(value)} is no way of sampling", action))
+            arguments.one_of(name, value, get_args(SamplingStyle))
             continue
         least, most = NUMBERS[name].least, NUMBERS[name].most
-        is_whole = name == "num_drones"
-        kinds = (int,) if is_whole else (int, float)
-        if isinstance(value, bool) or not isinstance(value, kinds):
-            noun = "whole number" if is_whole else "number"
-            faults.append(Fault(name, f"{shown(value)} is no {noun}", f"give a {noun} from {least:g} to {most:g}"))
-        elif not least <= value <= most:
-            # Python refuses to print numbers of more than some thousand digits.
-            told = repr(value) if abs(value) < 2**128 or isinstance(value, float) else "it"
-            faults.append(Fault(name, f"{told} is out of range", f"give a value from {least:g} to {most:g}"))
-    return faults
+        if name == "num_drones":
+            arguments.whole(name, value, int(least), int(most), f"give a whole number from {least:.0f} to {most:.0f}")
+        elif arguments.real(name, value, least, most, f"give a number from {least:.9g} to {most:.9g}"):
+            arguments.faults += _dwell_faults(value) if name == "dwell_s" else []
+    return arguments.faults
 
 
-def _combined_faults(fleet: Fleet) -> list[Fault]:
-    """What is wrong with settings that are each in range."""
-    faults = []
-    if fleet.dwell_s != math.floor(fleet.dwell_s):
-        message = f"{fleet.dwell_s:g} s is no whole number of seconds, and autopilots store no other"
-        faults.append(Fault("dwell_s", message, f"give {math.ceil(fleet.dwell_s)}"))
-    elif fleet.dwell_s == 0 and fleet.sampling == "splashdown":
+def _dwell_faults(dwell_s: Any) -> list[Fault]:
+    if dwell_s == math.floor(dwell_s):
+        return []
+    message = f"{dwell_s:g} s is no whole number of seconds, and autopilots store no other"
+    return [Fault("dwell_s", message, f"give {math.ceil(dwell_s)}")]
+
+
+def _combined_faults(settings: Mapping[str, object], faulty: Collection[str]) -> list[Fault]:
+    """What is wrong with settings that are each in range; those that are not can be judged with no other."""
+    faults: list[Fault] = []
+    values: dict[str, Any] = {item.name: item.default for item in fields(Fleet) if item.default is not MISSING}
+    values.update(settings)
+
+    def are_good(*names: str) -> bool:
+        return not any(name in faulty or values.get(name) is None for name in names)
+
+    if are_good("sampling", "dwell_s") and values["dwell_s"] == 0 and values["sampling"] == "splashdown":
         message = "0 s on the water is no stay: autopilots take a delay of 0 for a time of day"
         faults.append(Fault("dwell_s", message, "give 1 second or more"))
-    if fleet.sampling == "hover-dip" and fleet.dip_height_m >= fleet.transit_height_m:
-        message = f"{fleet.dip_height_m:g} m is not below the transit height of {fleet.transit_height_m:g} m"
-        faults.append(Fault("dip_height_m", message, "dip lower or fly higher"))
-    lowest_m, num_above = fleet.layers(1).way_home_m, fleet.num_drones - 1
-    if fleet.layer_spacing_m is not None and lowest_m + num_above * fleet.layer_spacing_m > MAX_HEIGHT_M:
-        highest_m, most_m = lowest_m + num_above * fleet.layer_spacing_m, (MAX_HEIGHT_M - lowest_m) / num_above
-        message = f"with {fleet.layer_spacing_m:g} m between drones the highest comes home at {highest_m:g} m"
-        num_fitting = 1 + math.floor((MAX_HEIGHT_M - lowest_m) / LEAST_SPACING_M)
-        most = (
-            f"give at most {math.floor(10 * most_m) / 10:g} m"
-            if most_m >= LEAST_SPACING_M
-            else (f"fly with at most {num_fitting} drones ({LEAST_SPACING_M:g} m apart), or lower")
-        )
-        action = f"{most}: nothing may fly above {MAX_HEIGHT_M} m"
-        faults.append(Fault("layer_spacing_m", message, action))
+    if are_good("sampling", "dip_height_m", "transit_height_m") and values["sampling"] == "hover-dip":
+        dip_m, transit_m = values["dip_height_m"], values["transit_height_m"]
+        if dip_m >= transit_m:
+            message = f"{dip_m:g} m is not below the transit height of {transit_m:g} m"
+            faults.append(Fault("dip_height_m", message, "dip lower or fly higher"))
+    if are_good("num_drones", "layer_spacing_m", "return_height_m", "transit_height_m"):
+        lowest_m = lowest_way_home_m(values["return_height_m"], values["transit_height_m"])
+        faults += _spacing_faults(values["num_drones"] - 1, values["layer_spacing_m"], lowest_m)
     return faults
+
+
+def _spacing_faults(num_above: int, spacing_m: float, lowest_m: float) -> list[Fault]:
+    highest_m = lowest_m + num_above * spacing_m
+    if highest_m <= MAX_HEIGHT_M:
+        return []
+    message = f"with {spacing_m:g} m between drones the highest comes home at {highest_m:g} m"
+    most_m = math.floor(10 * (MAX_HEIGHT_M - lowest_m) / num_above) / 10
+    remedy = f"give at most {most_m:g} m" if most_m >= LEAST_SPACING_M else layers_remedy(lowest_m, LEAST_SPACING_M)
+    return [Fault("layer_spacing_m", message, f"{remedy}: nothing may fly above {MAX_HEIGHT_M} m")]

@@ -10,7 +10,7 @@ from typing import Any
 
 from pondhop.arguments import checked_path
 from pondhop.errors import Fault, InvalidInput
-from pondhop.fleet.model import Fleet, setting_faults
+from pondhop.fleet.model import Fleet, fleet_faults
 from pondhop.fleet.settings import DECISIVE
 
 
@@ -42,7 +42,7 @@ def read_fleet(path: str | Path) -> Fleet:
     known = {key: value for key, value in settings.items() if key in names}
     if "num_drones" not in known:
         faults.append(Fault("num_drones", "the number of drones is missing", "add a line num_drones = 3"))
-    faults.extend(setting_faults(known))
+    faults.extend(fleet_faults(known))
     if faults:
         raise InvalidInput(faults)
     values: dict[str, Any] = dict(known)

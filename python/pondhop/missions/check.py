@@ -77,9 +77,8 @@ def broken_rules(
 def _position_faults(mission: Mission) -> Iterator[Fault]:
     places = [(f"{mission.name}, home", mission.home)]
     places += [(_place(mission, index), item.position) for index, item in enumerate(mission.items) if item.position]
-    for kind, rings in (("fence", mission.fences), ("no-fly zone", mission.no_fly)):
-        for number, ring in enumerate(rings, start=1):
-            places += [(f"{mission.name}, {kind} {number}", position) for position in ring]
+    for name, ring in mission.named_fences() + mission.named_no_fly():
+        places += [(f"{mission.name}, {name}", position) for position in ring]
     for place, (longitude, latitude) in places:
         if not -180 <= longitude <= 180:
             yield Fault(place, f"the longitude is {longitude}", "give one of -180 to 180 degrees")
@@ -175,8 +174,8 @@ def _area_rules(mission: Mission, margin_m: float, units: Units) -> Iterator[Bro
 
     names, paths = _legs(mission)
     flown = [shapely.Point(local([mission.home])[0]), *(shapely.LineString(local(path)) for path in paths)]
-    fences = [("outside_fence", f"fence {number}", ring) for number, ring in enumerate(mission.fences, start=1)]
-    zones = [("crosses_no_fly", f"no-fly zone {number}", ring) for number, ring in enumerate(mission.no_fly, start=1)]
+    fences = [("outside_fence", name, ring) for name, ring in mission.named_fences()]
+    zones = [("crosses_no_fly", name, ring) for name, ring in mission.named_no_fly()]
     for kind, area, ring in fences + zones:
         place = f"{mission.name}, {area}"
         polygon = shapely.Polygon(local(ring)) if len(ring) >= 3 else shapely.Polygon()

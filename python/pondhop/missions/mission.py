@@ -77,6 +77,8 @@ class Mission:
         In flying order; home is not one of them.
     fences, no_fly
         Polygons to stay inside and outside of: open rings of longitude, latitude.
+    fence_names, no_fly_names
+        What each of them is on the farm, for messages; no file holds it. A mission read from a file has none.
     """
 
     name: str
@@ -85,6 +87,16 @@ class Mission:
     items: tuple[MissionItem, ...]
     fences: tuple[Ring, ...] = ()
     no_fly: tuple[Ring, ...] = ()
+    fence_names: tuple[str, ...] = field(default=(), compare=False)
+    no_fly_names: tuple[str, ...] = field(default=(), compare=False)
+
+    def named_fences(self) -> list[tuple[str, Ring]]:
+        """Return every fence with its name, or its number where it has none."""
+        return _named("fence", self.fence_names, self.fences)
+
+    def named_no_fly(self) -> list[tuple[str, Ring]]:
+        """Return every no-fly zone with its name, or its number where it has none."""
+        return _named("no-fly zone", self.no_fly_names, self.no_fly)
 
 
 def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int], layers: Layers | None = None) -> Mission:
@@ -122,10 +134,35 @@ def build_mission(drone: int, farm: Farm, fleet: Fleet, route: Sequence[int], la
     for index in route:
         items.extend(_sampling_items(farm.ponds[index], fleet, height_m))
     items.append(MissionItem(Action.RETURN_TO_LAUNCH))
-    outlines = [_open(rings[0]) for rings in farm.fences]
-    outlines += [_open(hole) for _, *holes in farm.kept_out for hole in holes]
-    zones = [_open(outer) for outer, *holes in farm.kept_out if not holes]
-    return Mission(f"drone-{drone + 1}", home, speed_m_s, tuple(items), tuple(outlines), tuple(zones))
+    # An area is told as the farm's file has it: nobody looks for a fence where the file has none.
+    fences = [(f"fence {number}", rings[0]) for number, rings in enumerate(farm.fences, start=1)]
+    no_fly = []
+    for name, (outer, *holes) in zip(_names_of_kept_out(farm), farm.kept_out, strict=True):
+        fences += [(f"the hole of {name}", hole) for hole in holes]
+        no_fly += [(name, outer)] if not holes else []
+    return Mission(
+        f"drone-{drone + 1}",
+        home,
+        speed_m_s,
+        tuple(items),
+        fences=tuple(_open(ring) for _, ring in fences),
+        no_fly=tuple(_open(ring) for _, ring in no_fly),
+        fence_names=tuple(name for name, _ in fences),
+        no_fly_names=tuple(name for name, _ in no_fly),
+    )
+
+
+def _names_of_kept_out(farm: Farm) -> list[str]:
+    """What each area of `Farm.kept_out` is: no-fly zones first, then the holes of fences."""
+    names = [f"no-fly zone {number}" for number in range(1, len(farm.no_fly) + 1)]
+    for number, (_, *holes) in enumerate(farm.fences, start=1):
+        names += [f"hole {hole} of fence {number}" for hole in range(1, len(holes) + 1)]
+    return names
+
+
+def _named(kind: str, names: Sequence[str], rings: Sequence[Ring]) -> list[tuple[str, Ring]]:
+    numbered = [f"{kind} {number}" for number in range(1, len(rings) + 1)]
+    return list(zip(names if len(names) == len(rings) else numbered, rings, strict=True))
 
 
 def _sampling_items(pond: Pond, fleet: Fleet, height_m: float) -> list[MissionItem]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from pondhop.report.methods import Method
 
@@ -75,6 +77,10 @@ class Scope:
         limits_s = tuple(limit_s for limit_s in FULL.anytime_limits_s if limit_s <= MAX_LIMIT_SHARE * set_budget_s)
         options = f"{self.options} --budget {set_budget_s:g}"
         return replace(self, options=options, set_budget_s=set_budget_s, anytime_limits_s=limits_s)
+
+    def with_best_known(self, path: Path) -> Scope:
+        """Return this scope, where gaps are measured from the plans of a file; a shell can read its name again."""
+        return replace(self, options=f"{self.options} --best-known {shlex.quote(str(path))}")
 
     def num_farms_of(self, method: Method, num_ponds: int) -> int:
         """Return how many farms of a set of Table 1 a method plans: all, the first few, or none."""

@@ -13,6 +13,7 @@ from pondhop.report.methods import SEARCH, WITHIN_LIMITS_S, Method
 from pondhop.report.printed import COLUMNS, TABLE_1, TABLE_2, Column, Printed
 from pondhop.report.scope import MOST_PONDS_FOR_LEAST, NUM_ROUTES
 from pondhop.report.tables import Character, Margin, Score, Tables
+from pondhop.units import counted
 
 Quantity = Literal["total_length", "max_route_length", "seconds"]
 _NOTHING = "—"
@@ -92,7 +93,7 @@ class Wording:
             return of_runs
         listed = "to best known plans from a file, not from these runs"
         num_left = comparison.num_farms - comparison.num_listed
-        return f"{listed}; for {num_left} farms that it does not name, {of_runs}" if num_left else listed
+        return f"{listed}; for {counted(num_left, 'farm')} that it does not name, {of_runs}" if num_left else listed
 
     # Tables
 
