@@ -315,6 +315,15 @@ def test_bad_options_name_the_remedy(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_empty_argument_is_no_path(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # As of a variable of the shell that is not set: files would land in the current folder.
+    monkeypatch.chdir(tmp_path)
+    ran = run("plan", FARM, "--drones", 2, "-o", "")
+    assert ran.code == EXIT_INVALID_INPUT
+    assert "after -o: there is an empty argument" in ran.err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_faults_for_people_are_a_numbered_list(run: Run, tmp_path: Path) -> None:
     broken = tmp_path / "farms.json"
     broken.write_text('[{"depot": [0, "x"], "ponds": []}]')

@@ -226,6 +226,8 @@ def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:
     assert (first["RTL_ALT"], second["RTL_ALT"]) == (1500, 2000)
     # From near home, too: no cone caps that height, no least climb lifts it.
     assert (first["RTL_CONE_SLOPE"], first["RTL_CLIMB_MIN"]) == (0, 0)
+    # Heights above home, and landing there, whatever the drone was set to before.
+    assert (first["RTL_ALT_TYPE"], first["RTL_ALT_FINAL"]) == (0, 0)
     assert (first["WPNAV_SPEED"], first["RTL_SPEED"]) == (600, 1000)
     assert first["MIS_OPTIONS"] == 4
     # Twice the stay and half a minute: a pause on the water begins the stay anew.
@@ -245,6 +247,8 @@ def test_drones_are_set_to_what_the_plan_counts_with(tmp_path: Path) -> None:
         "RTL_ALT": 6,
         "RTL_CONE_SLOPE": 9,
         "RTL_CLIMB_MIN": 4,
+        "RTL_ALT_TYPE": 2,
+        "RTL_ALT_FINAL": 4,
         "RTL_SPEED": 4,
         "RTL_LOIT_TIME": 6,
         "MIS_OPTIONS": 4,
@@ -265,10 +269,12 @@ def test_no_parameter_file_mixes_centimetres_and_metres(tmp_path: Path) -> None:
     assert (old.pop("WPNAV_SPEED"), old.pop("RTL_ALT"), old.pop("RTL_SPEED")) == (500, 1800, 1000)
     assert (new.pop("WP_SPD"), new.pop("RTL_ALT_M"), new.pop("RTL_SPEED_MS")) == (5, 18, 10)
     assert (old.pop("RTL_CLIMB_MIN"), new.pop("RTL_CLIMB_MIN_M")) == (0, 0)
+    assert (old.pop("RTL_ALT_FINAL"), new.pop("RTL_ALT_FINAL_M")) == (0, 0)
     assert old == new
     assert new["RTL_CONE_SLOPE"] == 0
     rows = [line.split("\t") for line in (tmp_path / "drone-2-4.7.params").read_text().splitlines() if line[0] != "#"]
-    assert {row[2] for row in rows} == {*new, "WP_SPD", "RTL_ALT_M", "RTL_CLIMB_MIN_M", "RTL_SPEED_MS"}
+    metres = {"RTL_ALT_M", "RTL_CLIMB_MIN_M", "RTL_ALT_FINAL_M"}
+    assert {row[2] for row in rows} == {*new, *metres, "WP_SPD", "RTL_SPEED_MS"}
     text = " ".join((tmp_path / "README.txt").read_text().split())
     assert "Copter from version 4.7: load drone-N-4.7.param or drone-N-4.7.params instead" in text
     assert "RTL_ALT is RTL_ALT_M x 100" in text

@@ -243,3 +243,8 @@ def test_ponds_out_of_reach_are_told_once() -> None:
     )
     assert told.message.endswith("and 19 more)")
     assert not any("more drones" in found.remedy or "fly with" in found.remedy for found in farm_plan.violations)
+
+
+def test_an_unknown_option_is_told_with_those_there_are(problem: Problem) -> None:
+    with pytest.raises(TypeError, match=r"^there is no option 'tempo'; options are: seed, time_limit_s, "):
+        pondhop.solve(problem, planner="search", tempo=1)  # type: ignore[call-arg]

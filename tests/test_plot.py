@@ -216,3 +216,13 @@ def test_holes_of_areas_are_drawn_as_they_are_flown() -> None:
     assert [len(path) for path in water.get_paths()] == [12, 6, 6, 6, 6]
     corners = np.asarray(water.get_paths()[0].vertices)
     assert [float(np.linalg.det(ring[[1, 2]] - ring[0])) > 0.0 for ring in (corners[:6], corners[6:])] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"), [("x" * 61, "x" * 60 + "…"), ("鱼" * 31, "鱼" * 30 + "…"), ("x" * 60, "x" * 60)]
+)
+def test_a_long_name_leaves_the_picture_its_width(name: str, shown: str) -> None:
+    farm_plan = two_drones()
+    title = plot_plan(replace(farm_plan, farm=replace(farm_plan.farm, name=name))).get_title(loc="left")
+    # Without a font for it, a letter is replaced by one.
+    assert title == shown or title == f"{'?' * (len(shown) - 1)}…"

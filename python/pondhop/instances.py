@@ -129,7 +129,10 @@ def read_farms(path: str | Path) -> list[ResearchFarm]:
         farms = json.loads(text)
     except json.JSONDecodeError as error:
         place = f"{path}, line {error.lineno}, column {error.colno}"
-        raise InvalidInput([Fault(place, f"this is not JSON: {error.msg}", "give a JSON list of farms")]) from error
+        action = "give a JSON list of farms"
+        if "DIMENSION" in text[:2000]:
+            action = "TSPLIB is read if the name of the file ends in .tsp; files of vehicle routing are not"
+        raise InvalidInput([Fault(place, f"this is not JSON: {error.msg}", action)]) from error
     except RecursionError as error:
         raise InvalidInput([Fault(str(path), "brackets are nested too deep", "give a JSON list of farms")]) from error
     except ValueError as error:

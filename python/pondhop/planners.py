@@ -397,7 +397,7 @@ def solve(
     InvalidInput
         If the planner is unknown, an option has no meaning, or a route names a pond that does not exist.
     """
-    wishes = Options(**options)
+    wishes = _wishes(options)
     chosen, planner_faults = _chosen(planner)
     faults = [*_faults(wishes, problem, chosen), *planner_faults]
     if chosen is None or faults:
@@ -629,6 +629,15 @@ def _chosen(planner: str | PlannerFunction) -> tuple[Planner | None, list[Fault]
         action = f"did you mean {close[0]!r}?" if close else f"choose one of: {', '.join(PLANNERS)}"
         return None, [Fault("planner", f"there is no planner {planner!r}", action)]
     return PLANNERS[planner], []
+
+
+def _wishes(options: PlainOptions) -> Options:
+    """Return options by name; as everywhere in Python, a name that is none is a `TypeError`."""
+    known = [field.name for field in fields(Options)]
+    for name in options:
+        if name not in known:
+            raise TypeError(f"there is no option {name!r}; options are: {', '.join(known)}")
+    return Options(**options)
 
 
 def _takes_three(function: PlannerFunction) -> bool:

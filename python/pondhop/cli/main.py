@@ -45,6 +45,7 @@ def main() -> None:
     arguments = sys.argv[1:]
     try:
         with STOPS.raised():
+            _check_none_is_empty(arguments)
             app(arguments, prog_name="pondhop")
     except SystemExit as ended:
         if ended.code == EXIT_INTERRUPTED:
@@ -66,6 +67,17 @@ def main() -> None:
         sys.exit(EXIT_INVALID_INPUT)
     except Exception as error:  # noqa: BLE001 - the last resort: a user never sees a traceback unasked
         _exit_with_bug(error, arguments)
+
+
+def _check_none_is_empty(arguments: list[str]) -> None:
+    """Refuse empty arguments, as of shell variables that are not set: an empty path would be the current folder."""
+    faults = [
+        Fault(f"after {before}", "there is an empty argument", "give a value; is a variable of the shell empty?")
+        for before, argument in zip(["pondhop", *arguments], arguments, strict=False)
+        if not argument.strip()
+    ]
+    if faults:
+        raise InvalidInput(faults)
 
 
 def _print_version(is_wanted: bool) -> None:

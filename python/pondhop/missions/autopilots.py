@@ -3,7 +3,7 @@
 Sources: ArduPilot's parameter reference, and flights on a simulated ArduCopter 4.7 (docs/explanation/flight-model.md).
 How high a drone comes home says ArduCopter/mode_rtl.cpp: at RTL_ALT, but no higher than RTL_CONE_SLOPE (default 3, or 0
 for none) times the distance from home, and at least RTL_CLIMB_MIN (default 0) above where it is. The same file renames
-RTL_CLIMB_MIN to RTL_CLIMB_MIN_M in 4.7; RTL_CONE_SLOPE keeps its name.
+RTL_CLIMB_MIN to RTL_CLIMB_MIN_M and RTL_ALT_FINAL to RTL_ALT_FINAL_M in 4.7; RTL_CONE_SLOPE keeps its name.
 """
 
 from __future__ import annotations
@@ -137,6 +137,8 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int, units: Units) -> list
         Parameter("RTL_ALT", round(100 * return_height_m), home_why, "int32"),
         Parameter("RTL_CONE_SLOPE", 0, "the default, 3, keeps drones near home below their layers", "real"),
         Parameter("RTL_CLIMB_MIN", 0, "a climb before the way home would lift drones out of their layers", "int16"),
+        Parameter("RTL_ALT_TYPE", 0, "heights above home; over terrain, layers would cross", "int8"),
+        Parameter("RTL_ALT_FINAL", 0, "above 0 a drone hovers there and does not land", "int16"),
         Parameter("RTL_SPEED", round(100 * fleet.return_speed_m_s), "the plan counts with it on the way home", "int16"),
         Parameter("RTL_LOIT_TIME", round(1000 * fleet.return_loiter_s), "the plan counts with it (ms)", "int32"),
     ]
@@ -192,6 +194,7 @@ ARDUPILOT = Autopilot(
                 "WPNAV_SPEED": ("WP_SPD", "real", 0.01),
                 "RTL_ALT": ("RTL_ALT_M", "real", 0.01),
                 "RTL_CLIMB_MIN": ("RTL_CLIMB_MIN_M", "real", 0.01),
+                "RTL_ALT_FINAL": ("RTL_ALT_FINAL_M", "real", 0.01),
                 "RTL_SPEED": ("RTL_SPEED_MS", "real", 0.01),
                 "WPNAV_SPEED_UP": ("WP_SPD_UP", "real", 0.01),
                 "WPNAV_SPEED_DN": ("WP_SPD_DN", "real", 0.01),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import unicodedata
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,9 @@ Points = NDArray[np.float64]
 
 _MAP_SIZE_IN, _MAX_SIDE_IN = 6.5, 10.0
 """Side of a square map, and the longest side of any, in inches."""
+
+MAX_TITLE_WIDTH = 60
+"""Latin letters of a title that are about as wide as a square map."""
 
 
 def save_figure(ax: Axes, path: str | os.PathLike[str]) -> None:
@@ -178,7 +182,11 @@ def draw_scale_bar(ax: Axes, look: Look, units: Units) -> None:
 
 
 def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look) -> frozenset[str]:
-    """Write a name and below it lines of facts; return the letters of the name that no font has, and are replaced."""
+    """Write a name and below it lines of facts; return the letters of the name that no font has, and are replaced.
+
+    A name of more than `MAX_TITLE_WIDTH` is cut: the picture would grow with it, and the map be lost in white.
+    """
+    name = _cut(name, MAX_TITLE_WIDTH)
     letters = lettering([name])
     ax.set_title(
         letters.written(name),
@@ -202,3 +210,13 @@ def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look)
         color=look.faint_ink,
     )
     return letters.missing
+
+
+def _cut(text: str, max_width: int) -> str:
+    """Cut a text that is wider than so many Latin letters; those of China, Japan and Korea are twice as wide."""
+    width = 0
+    for place, letter in enumerate(text):
+        width += 2 if unicodedata.east_asian_width(letter) in "WF" else 1
+        if width > max_width:
+            return f"{text[:place].rstrip()}\N{HORIZONTAL ELLIPSIS}"
+    return text
