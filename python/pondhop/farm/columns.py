@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from pondhop.errors import Fault
-from pondhop.farm.degrees import Axis, hemisphere
+from pondhop.farm.degrees import Axis, hemisphere, names_both_sides, side_of
 from pondhop.farm.features import Source, normal_name, number_of
 from pondhop.farm.vocabulary import column_words
 
@@ -45,9 +45,11 @@ _CORNERS = {
 _EASTING = _any_of(*column_words("easting"))
 _NORTHING = _any_of(*column_words("northing"))
 _ZONE = _any_of(*column_words("zone"))
+_BAND = _any_of(*column_words("band"))
+_METRES = re.compile(r"[(\[]\s*m(?:et(?:re|er|ro)s?)?\.?\s*[)\]]", re.IGNORECASE)
 _PAIR = _any_of(*column_words("pair"))
 _LAT_SIDE = _any_of(*column_words("side_of_latitude"))
-_SIDE_NAMES = frozenset(map(normal_name, ("hemisphere", "hemisferio", "hemisfério", "hémisphère", "hem", "半球")))
+_SIDE_NAMES = frozenset(map(normal_name, column_words("side")))
 _LON_SIDE = _any_of(*column_words("side_of_longitude"))
 
 
@@ -73,6 +75,8 @@ class Columns:
         The column with the zone of UTM; then `corners` are easting and northing.
     zone_side
         The column that says whether the zone is the northern or the southern half.
+    zone_band
+        The column with the letter of the latitude band of the zone.
     pair
         A column that holds latitude and longitude, as map programs copy them.
     sign_of_o
@@ -89,6 +93,7 @@ class Columns:
     signs: dict[Axis, int] = field(default_factory=dict)
     zone: int | None = None
     zone_side: int | None = None
+    zone_band: int | None = None
     pair: int | None = None
     sign_of_o: int = -1
     has_joined_minutes: bool = False
@@ -96,7 +101,9 @@ class Columns:
     def used(self) -> set[int]:
         """Indices of the columns that tell where a pond is."""
         found = {index for pair in self.corners for index in pair} | set(self.sides.values())
-        return found | {index for index in (self.wkt, self.zone, self.zone_side, self.pair) if index is not None}
+        return found | {
+            index for index in (self.wkt, self.zone, self.zone_side, self.zone_band, self.pair) if index is not None
+        }
 
 
 def _axis(name: str) -> tuple[Axis, str, int] | None:
@@ -121,6 +128,16 @@ def _axis(name: str) -> tuple[Axis, str, int] | None:
     return None
 
 
+def axis_of(plain: str) -> Axis | None:
+    """The coordinate that a normal heading names by a word and nothing else: ``lat``, ``gpslongitude``, not ``x``."""
+    if plain in {"x", "y"}:
+        return None
+    for axis, words in zip(AXES, (_LON_WORDS, _LAT_WORDS), strict=True):
+        if re.fullmatch(rf"{_BEFORE}(?:{words}){_AFTER}", plain):
+            return axis
+    return None
+
+
 def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: str, source: Source) -> Columns | None:
     """Find the columns of a table, or tell what is missing.
 
@@ -135,7 +152,8 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
     source
         Gets the faults.
     """
-    names = tuple(name.strip() for name in header)
+    # A column without heading still may hold what tells the ponds apart, and faults must be able to name it.
+    names = tuple(name.strip() or f"{number} (no heading)" for number, name in enumerate(header, start=1))
     plain = [normal_name(name) for name in names]
     wkt = next(
         (index for index, name in enumerate(plain) if name in {"wkt", "geometry", "geom", "thegeom", "shape"}), None
@@ -160,14 +178,11 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
     if pair is not None:
         return Columns(names, pair=pair)
     zone = next((index for index, name in enumerate(plain) if re.fullmatch(_ZONE, name)), None)
-    eastings = [index for index, name in enumerate(plain) if re.fullmatch(_EASTING, name)]
-    northings = [index for index, name in enumerate(plain) if re.fullmatch(_NORTHING, name)]
-    if not eastings and not northings and zone is not None and ("lon", "") in found and ("lat", "") in found:
-        # Columns X and Y are metres where a zone stands beside them.
-        is_metres = any(_is_beyond_degrees(row, found["lon", ""]) for row in rows)
-        eastings, northings = ([found["lon", ""]], [found["lat", ""]]) if is_metres else ([], [])
+    eastings, northings = _metre_columns(names, found, zone, rows)
     if zone is not None and len(eastings) == len(northings) == 1:
-        return Columns(names, ((eastings[0], northings[0]),), zone=zone, zone_side=_zone_side(plain, rows, zone))
+        band = _zone_band(plain, rows, zone)
+        side = _zone_side(plain, rows, zone) if band is None else None
+        return Columns(names, ((eastings[0], northings[0]),), zone=zone, zone_side=side, zone_band=band)
     if wkt is None and not found:
         shown = ", ".join(names)[:80]
         seen = "numbers" if sum(number_of(name) is not None for name in names) > 1 else f"columns {shown}"
@@ -179,7 +194,42 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
         return None
     if not found or (wkt is not None and ("lon", "") not in found):
         return Columns(names, (), wkt)
-    return _with_corners(names, found, _sides(plain, rows, found), signs, place, source)
+    sides, open_sides = _sides(plain, rows, found)
+    for index in sorted(open_sides):
+        letters = next(row[index].strip() for row in rows if index < len(row) and row[index].strip())
+        message = f"does column {names[index]!r} tell the hemisphere? It holds {letters!r}"
+        action = "call the column hemisphere if it does; if not, leave it out or write words"
+        source.faults.append(Fault(place, message, action))
+    return None if open_sides else _with_corners(names, found, sides, signs, place, source)
+
+
+def _metre_columns(
+    names: Sequence[str], found: dict[tuple[Axis, str], int], zone: int | None, rows: Sequence[Sequence[str]]
+) -> tuple[list[int], list[int]]:
+    """The columns of eastings and of northings: called so; beside a zone, X and Y that are metres, or E and N."""
+    plain = [normal_name(_METRES.sub("", name)) for name in names]
+    eastings = [index for index, name in enumerate(plain) if re.fullmatch(_EASTING, name)]
+    northings = [index for index, name in enumerate(plain) if re.fullmatch(_NORTHING, name)]
+    if eastings or northings or zone is None:
+        return eastings, northings
+    if ("lon", "") in found and ("lat", "") in found:
+        is_metres = any(_is_beyond_degrees(row, found["lon", ""]) for row in rows)
+        return ([found["lon", ""]], [found["lat", ""]]) if is_metres else ([], [])
+    for pair in (("x", "y"), ("e", "n")):
+        if all(plain.count(name) == 1 for name in pair):
+            return [plain.index(pair[0])], [plain.index(pair[1])]
+    return [], []
+
+
+def _zone_band(plain: Sequence[str], rows: Sequence[Sequence[str]], zone: int) -> int | None:
+    """The column with the letter of the band, beside zones that are numbers."""
+    if any(not row[zone].strip().isdecimal() for row in rows if zone < len(row) and row[zone].strip()):
+        return None
+    for index, name in enumerate(plain):
+        cells = [row[index].strip() for row in rows if index < len(row) and row[index].strip()]
+        if re.fullmatch(_BAND, name) and cells and all(re.fullmatch("[C-HJ-NP-Xc-hj-np-x]", cell) for cell in cells):
+            return index
+    return None
 
 
 def _zone_side(plain: Sequence[str], rows: Sequence[Sequence[str]], zone: int) -> int | None:
@@ -217,23 +267,39 @@ def _is_beyond_degrees(row: Sequence[str], index: int) -> bool:
     return number is not None and abs(number) > 360.0
 
 
-def _sides(plain: Sequence[str], rows: Sequence[Sequence[str]], found: dict[tuple[Axis, str], int]) -> dict[Axis, int]:
-    """Columns with the letters of hemispheres: called so, or right beside their coordinate and nothing but letters."""
+def _sides(
+    plain: Sequence[str], rows: Sequence[Sequence[str]], found: dict[tuple[Axis, str], int]
+) -> tuple[dict[Axis, int], set[int]]:
+    """Columns with the letters of hemispheres, and those that may be such and may be something else.
+
+    Surely they are such if they are called so, or are right beside their coordinate and nothing but letters. Where
+    letters of both axes stand elsewhere under another heading, nobody knows.
+    """
     sides: dict[Axis, int] = {}
+    possible: dict[Axis, int] = {}
+    coordinates = {found.get((axis, "")) for axis in AXES}
     for axis, words in zip(AXES, (_LON_SIDE, _LAT_SIDE), strict=True):
         coordinate = found.get((axis, ""))
         if coordinate is None:
             continue
         for index, name in enumerate(plain):
-            cells = [row[index].strip() for row in rows if index < len(row) and row[index].strip()]
-            told = [hemisphere(cell) for cell in cells]
-            if not cells or any(side is None or side[0] != axis for side in told):
+            cells = {row[index].strip() for row in rows if index < len(row) and row[index].strip()}
+            if index in coordinates or not cells or any(side_of(cell, axis) is None for cell in cells):
                 continue
-            is_beside = index == coordinate + 1 and max(map(len, cells)) <= 2
-            if re.fullmatch(words, name) or is_beside or name in _SIDE_NAMES:
+            is_letters = all(hemisphere(cell) or names_both_sides(cell) for cell in cells)
+            is_short = is_letters and max(map(len, cells)) <= 2
+            # Within one farm, corners such as NE and SW are parts of it.
+            is_one_pair = len(cells) == 1 or not any(map(names_both_sides, cells))
+            is_named = re.fullmatch(words, name) or (name in _SIDE_NAMES and is_letters and is_one_pair)
+            is_beside = index in {coordinate - 1, coordinate + 1} and not any(map(names_both_sides, cells))
+            if is_named or (is_beside and is_short):
                 sides[axis] = index
                 break
-    return sides
+            if is_short and is_one_pair and cells.isdisjoint({"no", "No", "NO"}):
+                possible[axis] = index
+    open_axes = possible.keys() - sides.keys()
+    is_open = bool(open_axes) and len(possible.keys() | sides.keys()) == len(AXES)
+    return sides, {possible[axis] for axis in open_axes} if is_open else set()
 
 
 def _with_corners(

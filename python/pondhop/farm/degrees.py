@@ -36,6 +36,8 @@ _HEMISPHERES = {word: _SIDES[side] for side, words in hemisphere_words().items()
 """Letters and words of each side, with the sign; that of O is 0: it is west in Spanish and French, east in German."""
 
 _LETTERS = "|".join(sorted(map(re.escape, _HEMISPHERES), key=len, reverse=True))
+_SIDE_PAIR = re.compile(rf"({_LETTERS})\.?\s*[/,;&-]?\s*({_LETTERS})\.?", re.IGNORECASE)
+_PLAIN_SIGNS = {"+": 1, "1": 1, "+1": 1, "-": -1, "-1": -1}
 _SIGNED = re.compile(
     rf"(?P<before>{_LETTERS})?\s*(?P<sign>[+-])?\s*"
     r"(?P<angle>\d[^A-Za-z]*?(?:d[^A-Za-z]+(?:m[^A-Za-z]*(?:s[^A-Za-z]*)?)?)?)\s*"
@@ -110,6 +112,27 @@ def angle_fault(text: str) -> str | None:
 def hemisphere(text: str) -> tuple[Axis, int] | None:
     """The axis and the sign that a letter or word stands for; the sign of O is 0, because languages differ."""
     return _HEMISPHERES.get(text.strip().strip(".").lower())
+
+
+def side_of(text: str, axis: Axis) -> int | None:
+    """The sign that a cell beside a coordinate gives it: of ``S``, ``south``, ``SW`` or ``N/E``, of ``-`` or ``-1``.
+
+    That of O is 0; ``None`` for what says nothing about this axis.
+    """
+    plain = text.strip().translate(_SIGNS)
+    return _PLAIN_SIGNS[plain] if plain in _PLAIN_SIGNS else _sides_named(plain).get(axis)
+
+
+def names_both_sides(text: str) -> bool:
+    """Whether a cell names north or south, and east or west: ``SW``, ``N/E``."""
+    return len(_sides_named(text)) == 2
+
+
+def _sides_named(text: str) -> dict[Axis, int]:
+    """The sign of each axis whose side a cell names."""
+    pair = _SIDE_PAIR.fullmatch(text.strip())
+    parts = (text,) if hemisphere(text) is not None or pair is None else pair.groups()
+    return dict(side for part in parts if (side := hemisphere(part)) is not None)
 
 
 def side_written(text: str) -> tuple[Axis, int] | None:

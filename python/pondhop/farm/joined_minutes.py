@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pondhop.farm.columns import Columns, parted_pair
-from pondhop.farm.degrees import Axis, hemisphere, joined_number, parted_degrees, side_written
+from pondhop.farm.degrees import Axis, joined_number, parted_degrees, side_of, side_written
 from pondhop.farm.features import Notes
 from pondhop.places import LonLat
 
@@ -73,7 +73,7 @@ def _places(row: Sequence[str], columns: Columns) -> list[dict[Axis, str]]:
 def _has_letter(cell: str, axis: Axis, row: Sequence[str], columns: Columns) -> bool:
     """Whether a letter of a hemisphere stands in a cell, beside it or in its heading."""
     beside = _cell(row, columns.sides.get(axis))
-    return side_written(cell) is not None or hemisphere(beside) is not None or axis in columns.signs
+    return side_written(cell) is not None or side_of(beside, axis) is not None or axis in columns.signs
 
 
 def _cell(row: Sequence[str], index: int | None) -> str:

@@ -15,10 +15,11 @@ from dataclasses import replace
 from pondhop.errors import Fault
 from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
-from pondhop.farm.degrees import Axis, angle_fault, hemisphere, metres, parse_degrees, parse_joined
+from pondhop.farm.degrees import Axis, angle_fault, hemisphere, metres, parse_degrees, parse_joined, side_of
 from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank, listed, normal_name, shortened
 from pondhop.farm.joined_minutes import table_has_joined_minutes
 from pondhop.farm.letter_o import sign_of_o
+from pondhop.farm.parted_angles import join_parted_angles
 from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
 from pondhop.farm.words import is_plain_word, is_unnamed
@@ -136,6 +137,7 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> bool:
     bool
         Whether headings name coordinates and there are lines below.
     """
+    rows = join_parted_angles(rows, MAX_TITLE_LINES, source.notes)
     header, columns = _header(rows, word, source)
     if columns is None:
         return False
@@ -149,9 +151,7 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> bool:
     columns = replace(columns, has_joined_minutes=table_has_joined_minutes(columns, below, source.notes))
     features: list[Feature] = []
     zones: dict[str | int, list[Feature]] = {}
-    has_bands = any(
-        names_band(row[columns.zone]) for _, row in below if columns.zone is not None and columns.zone < len(row)
-    )
+    has_bands = columns.zone is not None and any(names_band(_zone_text(row, columns)) for _, row in below)
     for number, row in below:
         feature = _read_row(f"{word} {number}", row, columns, source)
         if feature is None:
@@ -181,19 +181,28 @@ def _degrees(cell: str, axis: Axis, columns: Columns) -> float | None:
     return parse(cell, axis, columns.sign_of_o)
 
 
+def _cell(row: Sequence[str], index: int | None) -> str:
+    return "" if index is None or index >= len(row) else row[index].strip()
+
+
+def _zone_text(row: Sequence[str], columns: Columns) -> str:
+    """The zone of a line, with its band where that has a column of its own: ``48P``."""
+    return _cell(row, columns.zone) + _cell(row, columns.zone_band)
+
+
 def _zone(
     feature: Feature, row: Sequence[str], columns: Columns, source: Source, *, has_bands: bool
 ) -> str | int | None:
     """The coordinate system of a line with a zone of UTM, or its fault."""
-    cells = ["" if index is None or index >= len(row) else row[index] for index in (columns.zone, columns.zone_side)]
-    side = hemisphere(cells[1])
+    text = _zone_text(row, columns)
+    side = hemisphere(_cell(row, columns.zone_side))
     northing_m = feature.geometry.points[0][1] if feature.geometry.points else 0.0
-    zone = utm_crs(cells[0], side[1] if side else 0, northing_m, has_bands=has_bands)
+    zone = utm_crs(text, side[1] if side else 0, northing_m, has_bands=has_bands)
     if zone is None:
         place = feature.property_place.format(columns.names[columns.zone or 0])
         action = "write number and hemisphere, as in 48N or 17S, or add a column hemisphere"
         told = f"{shortened(feature.name)!r}: " if feature.name else ""
-        source.faults.append(Fault(place, f"{told}{shortened(cells[0].strip())!r} is no zone of UTM", action))
+        source.faults.append(Fault(place, f"{told}{shortened(text)!r} is no zone of UTM", action))
     return zone
 
 
@@ -278,14 +287,14 @@ def _number(
     sign, told = columns.signs.get(axis, 1) or columns.sign_of_o, "its heading"
     if axis in columns.sides:
         letter = cells[columns.sides[axis]]
-        side = hemisphere(letter)
+        side = side_of(letter, axis)
         told = f"column {columns.names[columns.sides[axis]]}"
         if side is None and not is_blank(letter):
             source.faults.append(
                 Fault(place, f"{shortened(letter)!r} in {told} is no hemisphere", "write N, S, E or W")
             )
             return None
-        sign = side[1] or columns.sign_of_o if side is not None else 1
+        sign = side or columns.sign_of_o if side is not None else 1
         if number < 0.0 < sign and side is not None:
             message = f"{cell.strip()} is negative, but {told} says {letter.strip()}"
             source.faults.append(Fault(place, message, "correct the sign, or the letter"))
