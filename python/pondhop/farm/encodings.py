@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import itertools
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from pondhop.farm.features import Notes
 
 MAX_GUESSED_BYTES = 200_000
 """How much of a file is looked at to guess its encoding."""
+
+MAX_LETTER_BYTES = 4
+"""Bytes of the longest letter of UTF-8."""
 
 _LATIN_SIGNS = "\u00b0\u00ba\u00aa\u00b4\u2019"
 """Degree, ordinals and apostrophes, which stand in Latin text without being letters."""
@@ -143,6 +146,39 @@ def guess_encoding(content: bytes) -> tuple[str, str]:
         best = max(found, key=lambda item: item[:2])[2]
         return best.codec, best.label
     return "cp1252", "Windows Latin (cp1252)"
+
+
+def guess_of_fields(columns: Sequence[Sequence[bytes]]) -> tuple[str, str] | None:
+    """The codec of texts in fields so many bytes wide, where letters may be cut in two, and its name for people.
+
+    ``None`` where they are plain or Windows Latin.
+    """
+    foreign = [[value for value in column if not value.isascii()] for column in columns]
+    if not any(foreign):
+        return None
+    if all(decoded_field(value, "utf-8") for column in foreign for value in column):
+        return "utf-8", "UTF-8"
+    whole: list[bytes] = []
+    cut: list[bytes] = []
+    for column, values in zip(columns, foreign, strict=True):
+        width = max(map(len, column), default=0)
+        whole.extend(values)
+        cut.extend(value[:-1] if len(value) == width else value for value in values)
+    for values in (whole, cut):
+        codec, label = guess_encoding(b"\n".join(values)[:MAX_GUESSED_BYTES])
+        if codec != "cp1252":
+            return codec, label
+    return None
+
+
+def decoded_field(value: bytes, codec: str) -> str | None:
+    """The text of a field, without what is left of a letter that did not fit; ``None`` for what is no text."""
+    for num_cut in range(MAX_LETTER_BYTES):
+        try:
+            return value[: len(value) - num_cut].decode(codec)
+        except UnicodeDecodeError:
+            continue
+    return None
 
 
 def _stand_together(text: str) -> bool:

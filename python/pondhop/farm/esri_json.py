@@ -1,11 +1,12 @@
-"""The JSON of ArcGIS (feature sets of its REST interface and of "Features To JSON") as features."""
+"""The JSON of ArcGIS as features: feature sets (its REST interface, "Features To JSON"), and maps that hold some."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from pondhop.errors import Fault
-from pondhop.farm.features import Feature, Geometry, Positions, Source, number_of
+from pondhop.farm.features import Feature, Geometry, Positions, Source, listed, number_of
 from pondhop.farm.json_values import Features, shown
 from pondhop.farm.projections import reproject
 from pondhop.farm.rings import polygons_from_rings, signed_area
@@ -15,7 +16,22 @@ _WEB_MERCATOR = {102100: 3857, 102113: 3857}
 
 
 def is_esri_json(document: object) -> bool:
-    """Whether a document is a feature set of ArcGIS."""
+    """Whether a document is a feature set of ArcGIS, or holds layers of such."""
+    return _is_feature_set(document) or _is_map(document)
+
+
+def _is_map(document: object) -> bool:
+    """Whether a document is a web map, a collection of layers, or one of its layers."""
+    if not isinstance(document, dict) or "type" in document:
+        return False
+    layers = document.get("layers")
+    is_collection = isinstance(layers, list) and any(
+        isinstance(layer, dict) and "featureSet" in layer for layer in layers
+    )
+    return "operationalLayers" in document or is_collection or "featureSet" in document
+
+
+def _is_feature_set(document: object) -> bool:
     if (
         not isinstance(document, dict)
         or "type" in document
@@ -29,19 +45,64 @@ def is_esri_json(document: object) -> bool:
 
 
 def read_esri_json(document: dict[str, Any], source: Source) -> None:
-    """Read a feature set into features, in WGS84."""
+    """Read a feature set, or those of a map, into features, in WGS84."""
+    if _is_feature_set(document):
+        _read_feature_set(document, "", (), source)
+        return
+    linked: list[str] = []
+    sets = list(_feature_sets(document, "layer", linked))
+    source.layers.extend(dict.fromkeys(name for name, _ in sets))
+    for name, feature_set in sets:
+        _read_feature_set(feature_set, f"layer {name!r}, ", (name,), source)
+    if linked and sets:
+        source.notes.add(f"Left out, because the map only links to them: layers {listed(map(repr, linked))}.")
+    elif linked:
+        message = (
+            f"the map only links to its layers on a server ({listed(map(repr, linked))}), and holds none of their ponds"
+        )
+        action = "open the layer itself in ArcGIS, and export it as GeoJSON, shapefile or file geodatabase"
+        source.faults.append(Fault("file", message, action))
+    elif not sets:
+        source.faults.append(Fault("file", "the map holds no layer with features", "export the layer of the ponds"))
+
+
+def _feature_sets(layer: dict[str, Any], name: str, linked: list[str]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The feature sets of a map or layer, with the names of their layers; names of mere links go into `linked`."""
+    definition = layer.get("layerDefinition")
+    titles = (layer.get("title"), layer.get("name"), definition.get("name") if isinstance(definition, dict) else None)
+    name = next((title for title in titles if isinstance(title, str) and title.strip()), name)
+    feature_set = layer.get("featureSet")
+    if isinstance(feature_set, dict) and _is_feature_set(feature_set):
+        yield name, feature_set
+    collection = layer.get("featureCollection")
+    inner = [collection] if isinstance(collection, dict) else []
+    for member in ("operationalLayers", "layers"):
+        inner.extend(value for value in layer.get(member) or () if isinstance(value, dict))
+    for value in inner:
+        yield from _feature_sets(value, name, linked)
+    if not inner and "featureSet" not in layer and isinstance(layer.get("url"), str):
+        linked.append(name)
+
+
+def _read_feature_set(document: dict[str, Any], within: str, folders: tuple[str, ...], source: Source) -> None:
+    features: list[Feature] = []
+    reference = document.get("spatialReference")
     for index, value in enumerate(document["features"]):
-        place = f"features[{index}]"
+        place = f"{within}features[{index}]"
         attributes = value.get("attributes") if isinstance(value, dict) else None
         if not isinstance(value, dict) or not isinstance(attributes, dict | None):
             source.faults.append(Fault(place, f"{shown(value)} is no feature", "export the layer as GeoJSON"))
             continue
-        geometry = Geometry()
-        faults = _read_geometry(f"{place}.geometry", value.get("geometry"), geometry)
+        geometry, drawn = Geometry(), value.get("geometry")
+        faults = _read_geometry(f"{place}.geometry", drawn, geometry)
         source.faults.extend(faults)
+        # The features of a map know their coordinate system themselves, all the same one.
+        reference = reference or (drawn.get("spatialReference") if isinstance(drawn, dict) else None)
         if not faults:
-            source.features.append(Feature(place, f"{place}.attributes.{{}}", attributes or {}, geometry))
-    _apply_reference(document.get("spatialReference"), source)
+            told = place.replace("{", "{{").replace("}", "}}") + ".attributes.{}"
+            features.append(Feature(place, told, attributes or {}, geometry, folders=folders))
+    _apply_reference(reference, features, source)
+    source.features.extend(features)
 
 
 def _read_geometry(place: str, value: object, geometry: Geometry) -> list[Fault]:
@@ -94,7 +155,7 @@ def _position(value: object) -> tuple[float, float] | None:
     return None if x is None or y is None else (x, y)
 
 
-def _apply_reference(reference: object, source: Source) -> None:
+def _apply_reference(reference: object, features: Sequence[Feature], source: Source) -> None:
     if not isinstance(reference, dict):
         return
     code = reference.get("latestWkid") or reference.get("wkid")
@@ -102,6 +163,6 @@ def _apply_reference(reference: object, source: Source) -> None:
         code = _WEB_MERCATOR.get(code, code)
         if code != 4326:
             authority = "ESRI" if code > 100_000 else "EPSG"
-            reproject(f"{authority}:{code}", "spatialReference", source.features, source)
+            reproject(f"{authority}:{code}", "spatialReference", features, source)
     elif isinstance(reference.get("wkt"), str):
-        reproject(reference["wkt"], "spatialReference", source.features, source)
+        reproject(reference["wkt"], "spatialReference", features, source)

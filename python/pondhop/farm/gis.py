@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from pondhop.errors import Fault
+from pondhop.farm.encodings import decoded_field, guess_of_fields
 from pondhop.farm.features import Feature, Geometry, Source, listed
 from pondhop.farm.projections import reproject
 from pondhop.places import LonLat
@@ -122,6 +123,8 @@ def _read_layer(path: Path, layer: str, has_siblings: bool, source: Source) -> N
     except UnicodeDecodeError:
         meta, fids, wkbs, columns = read(path, **options, encoding="cp1252")
         source.notes.add("Attributes are not in the encoding that the file names; read as Windows Latin (cp1252).")
+    if path.suffix.lower() == ".shp" and not _names_encoding(path):
+        columns = _guessed_columns(read(path, **options, encoding="ISO-8859-1")[3], columns, source)
     names = [str(name) for name in meta["fields"]]
     prefix = f"layer {layer!r}, feature " if has_siblings else "feature "
     features = []
@@ -140,6 +143,60 @@ def _read_layer(path: Path, layer: str, has_siblings: bool, source: Source) -> N
         reproject(meta["crs"], f"layer {layer!r}", features, source)
     elif features:
         source.notes.add("The file names no coordinate system; WGS84 (EPSG:4326) is assumed.")
+
+
+def _names_encoding(path: Path) -> bool:
+    """Whether a file beside a shapefile says how its texts are encoded; Latin is what programs say that do not know."""
+    said = [
+        other.read_text("latin-1").strip().casefold()
+        for other in path.parent.iterdir()
+        if other.stem.casefold() == path.stem.casefold() and other.suffix.lower() == ".cpg"
+    ]
+    return bool(said) and said[0] not in {
+        "",
+        "iso-8859-1",
+        "iso 8859-1",
+        "88591",
+        "latin1",
+        "1252",
+        "cp1252",
+        "ansi 1252",
+    }
+
+
+def _guessed_columns(written: Sequence[Any], read: Sequence[Any], source: Source) -> Sequence[Any]:
+    """The columns of a shapefile in the encoding that its texts are in; as GDAL read them where nothing tells.
+
+    Parameters
+    ----------
+    written
+        The columns, their bytes as Latin letters.
+    read
+        The columns as GDAL understood them.
+    source
+        Gets a note where the encoding was guessed.
+    """
+    texts = [
+        [value.encode("latin-1") for value in column if isinstance(value, str)] if column.dtype == object else []
+        for column in written
+    ]
+    guess = guess_of_fields(texts)
+    if guess is None:
+        return read
+    codec, label = guess
+    source.notes.add(
+        f"The shapefile does not say how its texts are encoded; they were read as {label}. If names look wrong, "
+        "export it as GeoPackage."
+    )
+
+    def decoded(value: object) -> object:
+        if not isinstance(value, str):
+            return value
+        content = value.encode("latin-1")
+        text = decoded_field(content, codec)
+        return content.decode(codec, errors="replace") if text is None else text
+
+    return [list(map(decoded, column)) if column.dtype == object else column for column in written]
 
 
 def _scalar(value: Any) -> object:

@@ -6,11 +6,15 @@ from xml.etree.ElementTree import Element
 
 from pondhop.errors import Fault
 from pondhop.farm.features import Feature, Geometry, Positions, Source, number_of
+from pondhop.farm.shapes import closed_line
 from pondhop.farm.xml_tree import text_in
 
 
 def read_gpx(root: Element, source: Source) -> None:
-    """Read waypoints, tracks and routes; the segments of a track are one line, for a pause does not end a walk."""
+    """Read waypoints, tracks and routes.
+
+    The segments of a track are one line, for a pause does not end a walk; unless each of them walks around something.
+    """
     metadata = root.find("metadata")
     source.name = (text_in(metadata, "name") if metadata is not None else "") or source.name
     for number, point in enumerate(root.findall("wpt"), start=1):
@@ -18,8 +22,13 @@ def read_gpx(root: Element, source: Source) -> None:
     for tag, word, point_tag in (("trk", "track", "trkpt"), ("rte", "route", "rtept")):
         for number, line in enumerate(root.findall(tag), start=1):
             place = f"{word} {number}"
-            positions = _positions(list(line.iter(point_tag)), place, source)
-            _add(place, line, Geometry(lines=[positions]) if positions else Geometry(), source)
+            segments = [
+                _positions(list(part.iter(point_tag)), place, source) for part in line.findall("trkseg") or [line]
+            ]
+            walked = [segment for segment in segments if segment]
+            are_rounds = len(walked) > 1 and all(closed_line(segment) for segment in walked)
+            lines = walked if are_rounds or not walked else [[position for segment in walked for position in segment]]
+            _add(place, line, Geometry(lines=lines), source)
 
 
 def _add(place: str, element: Element, geometry: Geometry, source: Source) -> None:

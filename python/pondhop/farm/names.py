@@ -20,6 +20,7 @@ from pondhop.farm.features import (
 )
 from pondhop.farm.ponds import Draft
 from pondhop.farm.roles import KIND_COLUMNS, OSM_KEYS, POND_COLUMNS, ROLE_COLUMNS
+from pondhop.farm.shapes import places_together
 from pondhop.farm.vocabulary import column_words, english_words
 from pondhop.farm.words import Meaning, heading_words, is_plain_word, is_unnamed, meanings
 from pondhop.places import distance_m
@@ -44,8 +45,11 @@ _OF_PONDS = frozenset({Meaning.POND, Meaning.SAMPLING, Meaning.SERIES, Meaning.U
 MAX_ID_LETTERS = 40
 """A column with longer values is a remark."""
 
-COPY_M = 2.0
-"""Ponds nearer than this with one id in two layers are one pond drawn twice."""
+COPY_M = 25.0
+"""Ponds nearer than this with one id in two layers are one pond, surveyed twice."""
+
+SAME_PLACE_M = 1.0
+"""Ponds nearer than this in two layers are one pond, whatever they are called."""
 
 
 def adopt_names(features: Sequence[Feature]) -> None:
@@ -229,17 +233,8 @@ def _number(features: Sequence[Feature], id_of: dict[int, str], name: str, used:
 
 
 def _tell_copies(drafts: Sequence[Draft], source: Source) -> None:
-    """Tell of ponds with one id: copies in two layers, equal numbers in two folders, or a fault."""
-    firsts: dict[str, Draft] = {}
-    doubles: list[tuple[Draft, Draft]] = []
-    for draft in drafts:
-        first = firsts.setdefault(draft.id, draft)
-        if first is not draft:
-            doubles.append((first, draft))
-    if not doubles:
-        return
-    across = [(first, second) for first, second in doubles if first.feature.folders != second.feature.folders]
-    copies = [pair for pair in across if distance_m(pair[0].sampling_point, pair[1].sampling_point) < COPY_M]
+    """Tell of ponds that are there twice: in two layers, or with one id that is no number in two folders."""
+    copies = _copies(drafts)
     if copies:
         layers = dict.fromkeys(_layer(draft) for pair in copies for draft in pair)
         ponds = "1 pond is" if len(copies) == 1 else f"{len(copies)} ponds are"
@@ -247,7 +242,9 @@ def _tell_copies(drafts: Sequence[Draft], source: Source) -> None:
         source.faults.append(
             Fault("file", message, f"choose one with --layer {next(iter(layers))!r}, or remove the other")
         )
-    elif len(across) == len(doubles):
+    doubles = _doubles(drafts)
+    across = [(first, second) for first, second in doubles if first.feature.folders != second.feature.folders]
+    if doubles and not copies and len(across) == len(doubles):
         shared = {first.id for first, _ in doubles}
         for draft in drafts:
             if draft.id in shared and draft.feature.folders:
@@ -255,12 +252,33 @@ def _tell_copies(drafts: Sequence[Draft], source: Source) -> None:
         source.notes.add(
             f"Ponds of one name in different folders were named with their folders, as in {doubles[0][1].id!r}."
         )
-        across = [] if len({draft.id for draft in drafts}) == len(drafts) else across
-        doubles = across
+        doubles = [] if len({draft.id for draft in drafts}) == len(drafts) else across
+    told = {id(draft) for _, draft in copies}
     for first, draft in doubles:
-        if (first, draft) not in copies:
+        if id(draft) not in told:
             message = f"id {shortened(draft.id)!r} is already that of {first.feature.place}"
             source.faults.append(Fault(draft.feature.place, message, "give every pond an id of its own"))
+
+
+def _doubles(drafts: Sequence[Draft]) -> list[tuple[Draft, Draft]]:
+    """The first pond of each id with every other one of that id."""
+    firsts: dict[str, Draft] = {}
+    pairs = [(firsts.setdefault(draft.id, draft), draft) for draft in drafts]
+    return [(first, draft) for first, draft in pairs if first is not draft]
+
+
+def _copies(drafts: Sequence[Draft]) -> list[tuple[Draft, Draft]]:
+    """Ponds of two layers that are one pond, each with the first one."""
+    pairs = [
+        (first, draft)
+        for first, draft in _doubles(drafts)
+        if distance_m(first.sampling_point, draft.sampling_point) < COPY_M
+    ]
+    if len({draft.feature.folders for draft in drafts}) > 1:
+        together = places_together([draft.sampling_point for draft in drafts], SAME_PLACE_M)
+        pairs.extend((drafts[first], drafts[second]) for first, second in together)
+    across = [pair for pair in pairs if pair[0].feature.folders != pair[1].feature.folders]
+    return list({id(second): (first, second) for first, second in across}.values())
 
 
 def _layer(draft: Draft) -> str:

@@ -201,7 +201,8 @@ def _tell_holes(feature: Feature, role: str, area: Area, depot: LonLat | None, s
 
 def _tell_misnamed(feature: Feature, role: str, inside: float, source: Source) -> None:
     meaning = "an area to keep out of" if role == "no_fly" else "a fence around the farm"
-    message = f"it is called {feature.name!r}, but {inside:.0%} of the ponds lie in it: is it {meaning}?"
+    called = f"it is called {feature.name!r}" if feature.name else f"its words say {role}"
+    message = f"{called}, but {inside:.0%} of the ponds lie in it: is it {meaning}?"
     action = "say what it is in a property role: no_fly, fence, pond or other; or rename it"
     source.faults.append(Fault(feature.place, message, action))
 

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 from pondhop.errors import Fault
 from pondhop.farm.features import (
+    NAME_COLUMNS,
     Feature,
     Source,
     clean_text,
@@ -25,12 +28,15 @@ from pondhop.farm.features import (
     text_of,
 )
 from pondhop.farm.shapes import closed_line
-from pondhop.farm.vocabulary import column_words, pond_like_words, tag_meanings, tags_of_anything_else
+from pondhop.farm.vocabulary import column_words, pond_like_words, roofed_words, tag_meanings, tags_of_anything_else
 from pondhop.farm.words import (
     Meaning,
+    is_out_of_use,
     is_unnamed,
     keeps_drones_out,
     meanings,
+    name_stem,
+    plain_words,
     series_of,
     thing_named_for_pond,
     word_for,
@@ -46,11 +52,19 @@ POND_COLUMNS = frozenset(map(normal_name, column_words("ponds")))
 ROLE_COLUMNS = column_words("roles")
 KIND_COLUMNS = column_words("kinds")
 REMARK_COLUMNS = column_words("remarks")
+_LAYER_COLUMNS = frozenset(map(normal_name, column_words("layers")))
+"""Columns that may say what a feature is, or whose it is, or where."""
 _DECLARING_COLUMNS = ("service_s", "sampling_point", "pond_id", "pond", "pond_name", "pond_no", "pond_number")
 
 OSM_KEYS = tuple(dict.fromkeys((*tags_of_anything_else(), *(key for key, _ in tag_meanings()))))
 """Tags of OpenStreetMap that say what a feature is, not what it is called."""
 
+
+MAX_KINDS = 12
+"""Values that a column has at most that says what each feature is."""
+
+MIN_HOUSES = 3
+"""Houses with numbers that may be those of tanks; one or two are where people live."""
 
 MIN_SERIES = 2
 """Numbered points of one word such as station that make a series."""
@@ -135,9 +149,11 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     left_out: dict[Meaning, list[tuple[Feature, Verdict]]] = {Meaning.OTHER: [], Meaning.BOUNDARY: []}
     doubtful: list[tuple[Feature, str]] = []
     has_layers = len({feature.folders for feature in source.features}) > 1
-    verdicts = [(feature, _verdict(feature, has_layers, source)) for feature in features]
+    features = list(features)
+    kinds = _kind_columns(features)
+    verdicts = [(feature, _verdict(feature, has_layers, kinds, source)) for feature in features]
     judged = [(feature, verdict) for feature, verdict in verdicts if verdict is not None]
-    for feature, by_name in _with_series(judged, source):
+    for feature, by_name in _with_neighbours(_with_series(judged, source)):
         verdict = _with_remarks(feature, by_name)
         if verdict.is_doubtful or (verdict.meaning is Meaning.UNCERTAIN and not _is_declared(feature)):
             doubtful.append((feature, verdict.because))
@@ -175,6 +191,47 @@ def _leave_hidden(told: Sorted, source: Source) -> None:
     if areas:
         names = listed(feature.told() for feature in areas)
         source.notes.add(f"Hidden in the map program and kept all the same, because drones must know of them: {names}.")
+
+
+def _with_neighbours(judged: Sequence[tuple[Feature, Verdict]]) -> list[tuple[Feature, Verdict]]:
+    """What each feature is, in doubt where only its neighbours in the file say so.
+
+    Where a folder is named for ponds, what lies in another folder and says nothing of itself may be anything. And
+    three or more houses with numbers may be those that hold tanks.
+    """
+    of_ponds = {feature.folders for feature, verdict in judged if _lies_in_ponds(feature, verdict)}
+    pond_stems = {name_stem(feature.name) for feature, verdict in judged if _lies_in_ponds(feature, verdict)} - {None}
+    roofed = Counter(name_stem(feature.name) for feature, verdict in judged if _is_numbered_house(feature, verdict))
+    told = []
+    for feature, verdict in judged:
+        is_silent = verdict == Verdict(None) and not _is_declared(feature) and bool(feature.folders) and bool(of_ponds)
+        stem = name_stem(feature.name)
+        if is_silent and stem not in pond_stems:
+            because = f"it lies in {feature.folders[-1]!r}, and ponds in {next(iter(of_ponds))[-1]!r}"
+            verdict = Verdict(None, because, feature.name, is_doubtful=True)
+        elif _is_numbered_house(feature, verdict) and roofed[stem] >= MIN_HOUSES:
+            because = f"it is called {feature.name!r}, as {roofed[stem] - 1} others are but for the number"
+            verdict = Verdict(None, because, feature.name, is_doubtful=True)
+        told.append((feature, verdict))
+    return told
+
+
+def _lies_in_ponds(feature: Feature, verdict: Verdict) -> bool:
+    """Whether a folder says that a feature is a pond."""
+    return verdict.meaning is Meaning.POND and bool(feature.folders) and verdict.text in feature.folders
+
+
+def _is_numbered_house(feature: Feature, verdict: Verdict) -> bool:
+    """Whether an outline was left out by a numbered name of a building that may hold tanks."""
+    is_left_out = verdict.meaning in {Meaning.OTHER, Meaning.START} and verdict.text == feature.name
+    words = set(plain_words(feature.name))
+    return (
+        is_left_out
+        and not verdict.is_explicit
+        and _is_closed(feature)
+        and name_stem(feature.name) is not None
+        and any(word in words or (" " in word and word in feature.name.casefold()) for word in roofed_words())
+    )
 
 
 def _with_series(judged: Sequence[tuple[Feature, Verdict]], source: Source) -> list[tuple[Feature, Verdict]]:
@@ -234,13 +291,13 @@ def _is_surely_pond(feature: Feature, verdict: Verdict) -> bool:
 
 
 def _with_remarks(feature: Feature, verdict: Verdict) -> Verdict:
-    """What a feature is, in doubt where it may be a pond and a remark on it says that nobody flies there."""
+    """What a feature is, in doubt where it may be a pond and a remark says that nobody flies or samples there."""
     if verdict.is_explicit or not _may_be_pond(verdict):
         return verdict
     for key in present_columns(tuple(feature.properties), REMARK_COLUMNS):
         value = feature.properties[key]
         remark = _without_tags(value) if isinstance(value, str) else ""
-        if keeps_drones_out(remark):
+        if keeps_drones_out(remark) or is_out_of_use(remark):
             return Verdict(None, f"its {key} is {shortened(clean_text(remark), 60)!r}", is_doubtful=True)
     return verdict
 
@@ -412,7 +469,44 @@ _EXPLICIT = {
 }
 
 
-def _verdict(feature: Feature, has_layers: bool, source: Source) -> Verdict | None:
+@dataclass(frozen=True)
+class _KindColumns:
+    """Columns besides those called type that say what features are, by their plain names.
+
+    Attributes
+    ----------
+    sure
+        Called like a layer or a use, and every value says something, one of them pond and another something else.
+    doubtful
+        Only the one or the other: a use may be that of the land, and a column of pond and road say what is nearest.
+    """
+
+    sure: frozenset[str]
+    doubtful: frozenset[str]
+
+
+def _kind_columns(features: Sequence[Feature]) -> _KindColumns:
+    """Columns of any heading whose few values are words for ponds and other things, and those that may be such."""
+    known = {*map(normal_name, (*KIND_COLUMNS, *ROLE_COLUMNS, *REMARK_COLUMNS, *NAME_COLUMNS)), *POND_COLUMNS}
+    values: dict[str, set[str]] = {}
+    for feature in features:
+        for key, value in feature.properties.items():
+            name = normal_name(key)
+            if name in known or key in OSM_KEYS or is_blank(value):
+                continue
+            held = values.setdefault(name, set())
+            if len(held) <= MAX_KINDS:
+                held.add(value if isinstance(value, str) else "")
+    telling = set()
+    for name, held in values.items():
+        said = set(map(_kind_said, held))
+        if len(held) <= MAX_KINDS and None not in said and Meaning.POND in said and len(said) > 1:
+            telling.add(name)
+    layers = values.keys() & _LAYER_COLUMNS
+    return _KindColumns(sure=frozenset(telling & layers), doubtful=frozenset(telling ^ layers))
+
+
+def _verdict(feature: Feature, has_layers: bool, kinds: _KindColumns, source: Source) -> Verdict | None:
     found = feature.find(*ROLE_COLUMNS)
     if found is not None:
         return _explicit(feature, *found, source)
@@ -422,7 +516,7 @@ def _verdict(feature: Feature, has_layers: bool, source: Source) -> Verdict | No
         first, said = _decided(name, is_line=_is_line(feature)), f"it is called {name!r}"
         if first is None and Meaning.SAMPLING in meanings(name):
             return Verdict(None)
-    hints = list(_hints(feature, has_layers))
+    hints = list(_hints(feature, has_layers, kinds))
     second, hinted, text = next((hint for hint in hints if hint[0] is not None), (None, "", ""))
     if first is Meaning.POND:
         if Meaning.NO_FLY in meanings(name) or second is Meaning.NO_FLY:
@@ -437,10 +531,23 @@ def _verdict(feature: Feature, has_layers: bool, source: Source) -> Verdict | No
     if first is Meaning.UNCERTAIN and second is None:
         return Verdict(first, said, name)
     if first is None or first is Meaning.UNCERTAIN:
-        return Verdict(second, hinted, text)
+        doubt = _doubt_by_layer(feature, kinds) if second in {None, Meaning.UNCERTAIN} else None
+        return doubt or Verdict(second, hinted, text)
     if feature.find(*_DECLARING_COLUMNS) and series_of(name) is not None:
         return Verdict(Meaning.POND, said, name)
     return Verdict(first, said, name)
+
+
+def _doubt_by_layer(feature: Feature, kinds: _KindColumns) -> Verdict | None:
+    """The doubt about a feature of which only its layer or use says that it is no pond."""
+    if feature.find(*_DECLARING_COLUMNS):
+        return None
+    for key, value in feature.properties.items():
+        if normal_name(key) not in kinds.doubtful or not isinstance(value, str):
+            continue
+        if _kind_said(value) not in {None, Meaning.POND, Meaning.UNCERTAIN}:
+            return Verdict(None, f"its {key} is {shortened(value, 40)!r}", is_doubtful=True)
+    return None
 
 
 def _explicit(feature: Feature, key: str, value: object, source: Source) -> Verdict | None:
@@ -489,12 +596,28 @@ def _decided(text: str, *, is_line: bool) -> Meaning | None:
     return Meaning.OTHER if is_line and decided in {Meaning.START, Meaning.STATION} else decided
 
 
-def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None, str, str]]:
+def _kind_said(value: str) -> Meaning | None:
+    """What the value of a column of kinds says, in anybody's words or in those of OpenStreetMap."""
+    decided = _decided(value, is_line=False)
+    return decided if decided is not None else _meanings_of_tag_values().get(value.strip().casefold().replace(" ", "_"))
+
+
+@cache
+def _meanings_of_tag_values() -> dict[str, Meaning]:
+    """Values of tags of OpenStreetMap that say the same with every key."""
+    said: dict[str, set[str]] = {}
+    for (_, value), meaning in tag_meanings().items():
+        said.setdefault(value, set()).add(meaning)
+    return {value: Meaning[meaning.upper()] for value, [meaning, *others] in said.items() if not others}
+
+
+def _hints(feature: Feature, has_layers: bool, kinds: _KindColumns) -> Iterator[tuple[Meaning | None, str, str]]:
     """What kinds, map tags, folders and styles say, the nearest to the feature first, with the text of each."""
-    for key in present_columns(tuple(feature.properties), KIND_COLUMNS):
+    called = present_columns(tuple(feature.properties), KIND_COLUMNS)
+    for key in (*called, *(key for key in feature.properties if normal_name(key) in kinds.sure)):
         value = feature.properties[key]
         if isinstance(value, str) and not is_blank(value):
-            yield _decided(value, is_line=False), f"its {key} is {value[:40]!r}", value
+            yield _kind_said(value), f"its {key} is {value[:40]!r}", value
     yield from _tags(feature)
     for folder in reversed(feature.folders):
         meaning = _decided(folder, is_line=False)
@@ -510,7 +633,8 @@ def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None,
 def _tags(feature: Feature) -> Iterator[tuple[Meaning | None, str, str]]:
     """What the tags of OpenStreetMap say, and columns that are themselves a question: ``no_fly: yes``."""
     is_osm = any(key in feature.properties for key in ("@id", "osm_id", "osm_way_id"))
-    for key, value in feature.properties.items():
+    # That something is water is said of ponds and rivers alike; which it is, another tag tells.
+    for key, value in sorted(feature.properties.items(), key=lambda tag: tag == ("natural", "water")):
         if is_blank(value) or str(value).strip().lower() in {"no", "false", "0", "none"}:
             continue
         text = f"{key}={str(value)[:40]}"

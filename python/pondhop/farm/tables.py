@@ -22,6 +22,7 @@ from pondhop.farm.letter_o import sign_of_o
 from pondhop.farm.parted_angles import join_parted_angles
 from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.roles import POND_COLUMNS
+from pondhop.farm.vocabulary import column_words
 from pondhop.farm.words import is_plain_word, is_unnamed
 from pondhop.places import LonLat
 from pondhop.units import counted
@@ -47,6 +48,8 @@ _CORNER_ORDER = (
     "esquina",
     "orden",
 )
+
+_TOTALS = frozenset(map(normal_name, column_words("totals")))
 
 Row = tuple[int, list[str]]
 """The number of a line and its cells."""
@@ -145,6 +148,7 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> bool:
     if not below:
         source.faults.append(Fault("file", "the table has no line but the first", "add a line for each pond"))
         return False
+    below = _without_totals(below, word, source)
     columns = replace(columns, sign_of_o=sign_of_o(columns, below, word, source))
     if not columns.sign_of_o:
         return True
@@ -173,6 +177,22 @@ def read_rows(rows: Sequence[Row], word: str, source: Source) -> bool:
             source.open_zones.append(OpenZone(zone, told, [feature for feature in joined if feature.place in places]))
     source.features.extend(joined)
     return True
+
+
+def _without_totals(rows: Sequence[Row], word: str, source: Source) -> Sequence[Row]:
+    """The lines without those at the end whose first cell says that they sum up the table, with a note."""
+    end = len(rows)
+    while end > 1 and _is_total(rows[end - 1][1]):
+        end -= 1
+    if end < len(rows):
+        places = listed(f"{word} {number}" for number, _ in rows[end:])
+        source.notes.add(f"Left out, because it sums up the table: {places}.")
+    return rows[:end]
+
+
+def _is_total(row: Sequence[str]) -> bool:
+    first = next((cell for cell in row if cell.strip()), "")
+    return normal_name(re.sub(r"\d", "", first)) in _TOTALS
 
 
 def _degrees(cell: str, axis: Axis, columns: Columns) -> float | None:

@@ -64,8 +64,14 @@ def english_words(kind: str) -> frozenset[str]:
 
 @cache
 def remark_words(kind: str) -> tuple[str, ...]:
-    """Phrases of remarks that keep drones out, or those that say that another place is meant."""
+    """Phrases of remarks of one kind: those that keep drones out, that say that a pond is out of use, or where else."""
     return _parted(_tables()["remarks"][kind])
+
+
+@cache
+def roofed_words() -> tuple[str, ...]:
+    """Words for buildings that may hold tanks and raceways."""
+    return _parted(_tables()["roofed"]["words"])
 
 
 @cache

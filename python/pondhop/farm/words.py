@@ -70,6 +70,13 @@ def _words(text: str) -> list[str]:
     return list(map(_stem, _split(text)))
 
 
+def name_stem(name: str) -> str | None:
+    """What a name with a number has in common with others of its series; ``None`` without a number."""
+    plain = re.sub(r"[\W_]+", "", name.casefold())
+    stem, count = re.subn(r"(?:no|nr|num)?\d+[a-z]?(?![a-z])", "#", plain)
+    return re.sub(r"[号號番#]+$", "#", stem) if count else None
+
+
 def heading_words(text: str) -> list[str]:
     """The words of a heading, as in ``Site_Code`` and ``pondNo``."""
     return _split(text)
@@ -213,18 +220,45 @@ def _is_no_fly_clause(clause: str) -> bool:
     return False
 
 
+@lru_cache(maxsize=65_536)
+def is_out_of_use(remark: str) -> bool:
+    """Whether a clause of a remark says that there is nothing to measure: ``drained``, ``dry since May``."""
+    return any(map(_is_unused_clause, _CLAUSE_ENDS.split(remark)))
+
+
+def _is_unused_clause(clause: str) -> bool:
+    words = tuple(_words(clause))
+    plain = re.sub(r"[\W\d_]+", "", unicodedata.normalize("NFKC", clause).casefold())
+    phrases, times = _unused_phrases()
+    for phrase in phrases:
+        if isinstance(phrase, str):
+            if plain == re.sub(r"[\W\d_]+", "", phrase):
+                return True
+        elif words[: len(phrase)] == phrase and (len(words) == len(phrase) or words[len(phrase)] in times):
+            return True
+    return False
+
+
+def _compared(phrase: str) -> tuple[str, ...] | str:
+    """A phrase of remarks as words, or as a run of signs where its script does not set words apart."""
+    is_spaced = all(_is_spaced(letter) for letter in phrase if letter.isalpha())
+    return tuple(_words(phrase)) if is_spaced else unicodedata.normalize("NFKC", phrase).casefold()
+
+
+@cache
+def _unused_phrases() -> tuple[list[tuple[str, ...] | str], frozenset[str]]:
+    """Phrases that say that a pond is out of use, the longest first; and the words before times."""
+    times = frozenset(word for phrase in remark_words("times") for word in _words(phrase))
+    return sorted(map(_compared, remark_words("unused")), key=len, reverse=True), times
+
+
 @cache
 def _remark_phrases() -> tuple[list[tuple[str, ...] | str], frozenset[str]]:
     """Phrases that keep drones out, as words or as runs of signs, the longest first; and words for other places."""
-
-    def compared(phrase: str) -> tuple[str, ...] | str:
-        is_spaced = all(_is_spaced(letter) for letter in phrase if letter.isalpha())
-        return tuple(_words(phrase)) if is_spaced else unicodedata.normalize("NFKC", phrase).casefold()
-
     elsewhere = frozenset(
-        word if isinstance(word, str) else word[0] for word in map(compared, remark_words("elsewhere"))
+        word if isinstance(word, str) else word[0] for word in map(_compared, remark_words("elsewhere"))
     )
-    return sorted(map(compared, remark_words("no_fly")), key=len, reverse=True), elsewhere
+    return sorted(map(_compared, remark_words("no_fly")), key=len, reverse=True), elsewhere
 
 
 def _stands_in(phrase: str, meaning: Meaning, text: str) -> bool:
