@@ -32,6 +32,7 @@ def doubted(path: Path) -> list[str]:
         ("uso", ("estanque", "casa", "vía")),
         ("objekt", ("kolam", "jalan", "kantor")),
         ("fclass", ("water", "residential", "riverbank")),
+        ("landuse", ("aquaculture", "road")),
     ],
 )
 def test_a_column_whose_values_are_words_of_roles_tells(tmp_path: Path, heading: str, values: tuple[str, ...]) -> None:
@@ -46,6 +47,7 @@ def test_a_column_whose_values_are_words_of_roles_tells(tmp_path: Path, heading:
     [
         ("usage", ("culture", "office")),
         ("用途", ("养殖", "办公室")),
+        ("landuse", ("aquaculture", "road")),
         ("land_cover", ("clear", "forest")),
         ("next to", ("pond", "road")),
     ],
@@ -96,7 +98,16 @@ def test_still_waters_of_openstreetmap_are_ponds(tmp_path: Path, tags: dict[str,
 
 @pytest.mark.parametrize(
     "remark",
-    ["Không bay", "não sobrevoar", "jangan terbang", "do not fly", "请勿飞", "ne pas survoler", "nicht überfliegen"],
+    [
+        "Không bay",
+        "उड़ान निषेध",
+        "não sobrevoar",
+        "jangan terbang",
+        "do not fly",
+        "请勿飞",
+        "ne pas survoler",
+        "nicht überfliegen",
+    ],
 )
 def test_a_remark_that_nobody_flies_there_is_asked_about(tmp_path: Path, remark: str) -> None:
     assert keeps_drones_out(remark)
@@ -160,7 +171,7 @@ def numbered(folder_path: Path, word: str, number: int) -> Path:
     return geojson(folder_path, *ponds, *(polygon(at, 3, name=f"{word} {at + 1}") for at in range(number)))
 
 
-@pytest.mark.parametrize("word", ["House", "Hatchery", "Greenhouse", "Galpón", "Nhà", "CTR"])
+@pytest.mark.parametrize("word", ["House", "Lab", "Hatchery", "Greenhouse", "Galpón", "Nhà", "CTR"])
 def test_numbered_houses_and_codes_beside_ponds_are_asked_about(tmp_path: Path, word: str) -> None:
     assert len(doubted(numbered(tmp_path, word, 3))) == 3
 

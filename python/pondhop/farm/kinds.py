@@ -95,7 +95,7 @@ def kind_columns(features: Sequence[Feature]) -> KindColumns:
     keys = dict.fromkeys(key for feature in features for key in feature.properties)
     for key in keys:
         name = normal_name(key)
-        if name in known or key in OSM_KEYS:
+        if name in known or (key in OSM_KEYS and name not in _LAYER_COLUMNS):
             continue
         held = values.setdefault(name, set())
         for feature in features:
