@@ -47,7 +47,6 @@ def test_a_column_whose_values_are_words_of_roles_tells(tmp_path: Path, heading:
     [
         ("usage", ("culture", "office")),
         ("用途", ("养殖", "办公室")),
-        ("landuse", ("aquaculture", "road")),
         ("land_cover", ("clear", "forest")),
         ("next to", ("pond", "road")),
     ],
