@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from pondhop.farm.features import listed, shortened
 from pondhop.farm.model import Doubt
 from pondhop.farm.ponds import Draft
-from pondhop.farm.vocabulary import pond_like_words
-from pondhop.farm.words import Meaning, is_unnamed, meanings, plain_words
+from pondhop.farm.words import Meaning, is_ordinary, meanings
 
 MIN_NUMBERED = 4
 """Ponds of one word and a number that make a pattern."""
@@ -55,7 +54,7 @@ def odd_names(drafts: Sequence[Draft], sure: set[str]) -> list[Doubt]:
         and draft.feature.place not in sure
         and (own is None or counts[own] < MIN_OTHER_SERIES)
         and draft.feature.name
-        and not _is_ordinary(name)
+        and not is_ordinary(name)
     ]
     if len(odd) > max(1, int(MAX_ODD_SHARE * sum(follows))):
         return []
@@ -76,11 +75,3 @@ def _stem(name: str) -> str | None:
     plain = re.sub(r"[\W_]+", "", name.casefold())
     stem, count = re.subn(r"(?:no|nr|num)?\d+[a-z]?(?![a-z])", "#", plain)
     return re.sub(r"[号號番#]+$", "#", stem) if count else None
-
-
-def _is_ordinary(name: str) -> bool:
-    """Whether a name is a code, or says what ponds are called by: a side, a size, a fish."""
-    if is_unnamed(name):
-        return True
-    words = plain_words(name)
-    return all((len(word) <= 2 and word.isascii()) or word in pond_like_words() for word in words)

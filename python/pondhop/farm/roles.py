@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from pondhop.errors import Fault
@@ -16,16 +16,15 @@ from pondhop.farm.features import (
     Feature,
     Source,
     clean_text,
-    is_blank,
     left_out_note,
     listed,
     normal_name,
     present_columns,
     shortened,
-    text_of,
 )
+from pondhop.farm.hints import REMARK_COLUMNS, ROLE_COLUMNS, Hint, Surroundings, decided, hint_of, surroundings_of
 from pondhop.farm.shapes import closed_line
-from pondhop.farm.vocabulary import column_words, pond_like_words, tag_meanings, tags_of_anything_else
+from pondhop.farm.vocabulary import pond_like_words
 from pondhop.farm.words import (
     Meaning,
     is_unnamed,
@@ -40,17 +39,7 @@ from pondhop.units import counted
 ROLES = ("pond", "depot", "station", "no_fly", "fence", "other")
 """What a feature can be, in the property ``role``; the first is the default."""
 
-POND_COLUMNS = frozenset(map(normal_name, column_words("ponds")))
-"""Columns that tell one pond from another."""
-
-ROLE_COLUMNS = column_words("roles")
-KIND_COLUMNS = column_words("kinds")
-REMARK_COLUMNS = column_words("remarks")
 _DECLARING_COLUMNS = ("service_s", "sampling_point", "pond_id", "pond", "pond_name", "pond_no", "pond_number")
-
-OSM_KEYS = tuple(dict.fromkeys((*tags_of_anything_else(), *(key for key, _ in tag_meanings()))))
-"""Tags of OpenStreetMap that say what a feature is, not what it is called."""
-
 
 MIN_SERIES = 2
 """Numbered points of one word such as station that make a series."""
@@ -134,12 +123,12 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     told = Sorted()
     left_out: dict[Meaning, list[tuple[Feature, Verdict]]] = {Meaning.OTHER: [], Meaning.BOUNDARY: []}
     doubtful: list[tuple[Feature, str]] = []
-    has_layers = len({feature.folders for feature in source.features}) > 1
-    verdicts = [(feature, _verdict(feature, has_layers, source)) for feature in features]
+    around = surroundings_of(source.features)
+    verdicts = [(feature, _verdict(feature, around, source)) for feature in features]
     judged = [(feature, verdict) for feature, verdict in verdicts if verdict is not None]
     for feature, by_name in _with_series(judged, source):
         verdict = _with_remarks(feature, by_name)
-        if verdict.is_doubtful or (verdict.meaning is Meaning.UNCERTAIN and not _is_declared(feature)):
+        if verdict.is_doubtful or (verdict.meaning is Meaning.UNCERTAIN and not feature.find(*_DECLARING_COLUMNS)):
             doubtful.append((feature, verdict.because))
             continue
         _file(feature, verdict, told, left_out, source)
@@ -294,12 +283,10 @@ def no_pond_fault(told: Sorted) -> Fault:
 
 def _told_with_id(feature: Feature) -> str:
     """The name, id and place of a feature, for messages."""
-    found = feature.find("id")
-    own_id = clean_text(text_of(found[1])) if found else feature.own_id or ""
-    if not own_id or own_id == feature.name:
+    if not feature.id or feature.id == feature.name:
         return feature.told()
     named = f"{shortened(feature.name)!r} " if feature.name else ""
-    return f"{named}(id {shortened(own_id)}, {feature.place})"
+    return f"{named}(id {shortened(feature.id)}, {feature.place})"
 
 
 def _file(
@@ -412,39 +399,44 @@ _EXPLICIT = {
 }
 
 
-def _verdict(feature: Feature, has_layers: bool, source: Source) -> Verdict | None:
+def _verdict(feature: Feature, around: Surroundings, source: Source) -> Verdict | None:
     found = feature.find(*ROLE_COLUMNS)
     if found is not None:
         return _explicit(feature, *found, source)
     name = feature.name
     first, said = None, ""
     if name and not is_unnamed(name):
-        first, said = _decided(name, is_line=_is_line(feature)), f"it is called {name!r}"
+        first, said = decided(name, is_line=_is_line(feature)), f"it is called {name!r}"
         if first is None and Meaning.SAMPLING in meanings(name):
             return Verdict(None)
-    hints = list(_hints(feature, has_layers))
-    second, hinted, text = next((hint for hint in hints if hint[0] is not None), (None, "", ""))
+    hint = hint_of(feature, around)
     if first is Meaning.POND:
-        if Meaning.NO_FLY in meanings(name) or second is Meaning.NO_FLY:
-            because = said if second is not Meaning.NO_FLY else f"{said}, but {hinted}"
-            return Verdict(None, because, name, is_doubtful=True)
-        is_something_at_pond = _is_point(feature) and bool({Meaning.OTHER, Meaning.START} & meanings(name))
-        if is_something_at_pond or thing_named_for_pond(name) is not None or Meaning.UNUSED in meanings(name):
-            return Verdict(None, said, name, is_doubtful=True)
-        return Verdict(first, said, name)
+        return _called_a_pond(feature, said, hint)
     if first is None and name and Meaning.UNUSED in meanings(name):
         return Verdict(None, said, name, is_doubtful=True)
-    if first is Meaning.UNCERTAIN and second is None:
-        return Verdict(first, said, name)
-    if first is None or first is Meaning.UNCERTAIN:
-        return Verdict(second, hinted, text)
+    if first is None or (first is Meaning.UNCERTAIN and hint and hint.meaning is not Meaning.UNCERTAIN):
+        return Verdict(hint.meaning, hint.because, hint.text) if hint else Verdict(None)
     if feature.find(*_DECLARING_COLUMNS) and series_of(name) is not None:
         return Verdict(Meaning.POND, said, name)
+    if first not in {Meaning.UNCERTAIN, Meaning.DEPOT} and hint and hint.is_own and Meaning.POND in meanings(hint.text):
+        return Verdict(None, f"{said}, but {hint.because}", name, is_doubtful=True)
     return Verdict(first, said, name)
 
 
+def _called_a_pond(feature: Feature, said: str, hint: Hint | None) -> Verdict:
+    """What a feature is that has a word for ponds in its name: a pond, unless name or kind speak against it."""
+    name = feature.name
+    if hint and (hint.meaning is Meaning.NO_FLY or (hint.is_own and hint.meaning in {Meaning.OTHER, Meaning.BOUNDARY})):
+        return Verdict(None, f"{said}, but {hint.because}", name, is_doubtful=True)
+    is_something_at_pond = _is_point(feature) and bool({Meaning.OTHER, Meaning.START} & meanings(name))
+    is_named_for_pond = thing_named_for_pond(name) is not None
+    if is_something_at_pond or is_named_for_pond or {Meaning.NO_FLY, Meaning.UNUSED} & meanings(name):
+        return Verdict(None, said, name, is_doubtful=True)
+    return Verdict(Meaning.POND, said, name)
+
+
 def _explicit(feature: Feature, key: str, value: object, source: Source) -> Verdict | None:
-    meaning = _EXPLICIT.get(normal_name(str(value))) or _decided(str(value), is_line=False)
+    meaning = _EXPLICIT.get(normal_name(str(value))) or decided(str(value), is_line=False)
     if meaning is Meaning.START:
         meaning = Meaning.DEPOT
     if meaning is None or meaning is Meaning.UNCERTAIN:
@@ -462,63 +454,3 @@ def _is_point(feature: Feature) -> bool:
 
 def _is_line(feature: Feature) -> bool:
     return bool(feature.geometry.lines) and not feature.geometry.polygons
-
-
-_ORDER = (
-    Meaning.POND,
-    Meaning.NO_FLY,
-    Meaning.OTHER,
-    Meaning.DEPOT,
-    Meaning.START,
-    Meaning.STATION,
-    Meaning.FENCE,
-    Meaning.BOUNDARY,
-    Meaning.UNCERTAIN,
-)
-"""Which of several meanings of a name counts: an "office at the base" is an office, a "pond by the office" a pond."""
-
-
-def _decided(text: str, *, is_line: bool) -> Meaning | None:
-    found = meanings(text)
-    decided = next((meaning for meaning in _ORDER if meaning in found), None)
-    if Meaning.SAMPLING in found and series_of(text) is not None:
-        # A station where samples are taken is none of the drones.
-        return None
-    if decided is Meaning.OTHER and Meaning.DEPOT in found:
-        return Meaning.START
-    return Meaning.OTHER if is_line and decided in {Meaning.START, Meaning.STATION} else decided
-
-
-def _hints(feature: Feature, has_layers: bool) -> Iterator[tuple[Meaning | None, str, str]]:
-    """What kinds, map tags, folders and styles say, the nearest to the feature first, with the text of each."""
-    for key in present_columns(tuple(feature.properties), KIND_COLUMNS):
-        value = feature.properties[key]
-        if isinstance(value, str) and not is_blank(value):
-            yield _decided(value, is_line=False), f"its {key} is {value[:40]!r}", value
-    yield from _tags(feature)
-    for folder in reversed(feature.folders):
-        meaning = _decided(folder, is_line=False)
-        # The only layer of a file holds the ponds, whatever it is called, unless that is something to keep out of.
-        if has_layers or meaning in {Meaning.NO_FLY, Meaning.FENCE, Meaning.BOUNDARY}:
-            yield (None if meaning is Meaning.UNCERTAIN else meaning), f"it lies in {folder!r}", folder
-    if feature.style:
-        meaning = _decided(feature.style, is_line=False)
-        told = f"its style is {feature.style[:40]!r}"
-        yield (meaning if meaning in {Meaning.NO_FLY, Meaning.FENCE} else None), told, feature.style
-
-
-def _tags(feature: Feature) -> Iterator[tuple[Meaning | None, str, str]]:
-    """What the tags of OpenStreetMap say, and columns that are themselves a question: ``no_fly: yes``."""
-    is_osm = any(key in feature.properties for key in ("@id", "osm_id", "osm_way_id"))
-    for key, value in feature.properties.items():
-        if is_blank(value) or str(value).strip().lower() in {"no", "false", "0", "none"}:
-            continue
-        text = f"{key}={str(value)[:40]}"
-        told = f"it has {text}"
-        meaning = tag_meanings().get((key, str(value)))
-        if meaning is not None:
-            yield Meaning[meaning.upper()], told, text
-        elif key in tags_of_anything_else() and (is_osm or str(value) == "yes"):
-            yield Meaning.OTHER, told, text
-        elif str(value).strip().lower() in {"yes", "true", "1"} and meanings(key) == {Meaning.NO_FLY}:
-            yield Meaning.NO_FLY, told, text

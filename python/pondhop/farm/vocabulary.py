@@ -57,6 +57,12 @@ def tag_meanings() -> dict[tuple[str, str], str]:
 
 
 @cache
+def kind_meanings() -> dict[str, str]:
+    """What values of a column of kinds say that say nothing, or less, in a name: the name of a meaning."""
+    return {value.casefold(): meaning for meaning, text in _tables()["kinds"].items() for value in _parted(text)}
+
+
+@cache
 def english_words(kind: str) -> frozenset[str]:
     """English words for ponds, or those before which the name of a thing ends."""
     return frozenset(word.casefold() for word in _parted(_tables()["english"][kind]))

@@ -13,7 +13,7 @@ import unicodedata
 from enum import Enum
 from functools import cache, lru_cache
 
-from pondhop.farm.vocabulary import english_words, meaning_words, pond_like_words, remark_words
+from pondhop.farm.vocabulary import english_words, kind_meanings, meaning_words, pond_like_words, remark_words
 
 
 class Meaning(Enum):
@@ -256,3 +256,19 @@ def _is_phrase(text: str, meaning: Meaning) -> bool:
 def is_plain_word(text: str) -> bool:
     """Whether a name is a word for ponds alone, which tells no pond from another."""
     return _is_phrase(text, Meaning.POND) and not any(letter.isdigit() for letter in text)
+
+
+def is_ordinary(text: str) -> bool:
+    """Whether a text is a code, or says what ponds are called by: a side, a size, a fish."""
+    if is_unnamed(text):
+        return True
+    words = plain_words(text)
+    return all((len(word) <= 2 and word.isascii()) or word in pond_like_words() for word in words)
+
+
+def says_only(text: str) -> bool:
+    """Whether all words of a text say what a thing is, and no number tells it from others of its kind."""
+    found, rest = _told(text)
+    is_numbered = any(letter.isdigit() for letter in text)
+    is_kind = bool(found) or text.strip().casefold() in kind_meanings()
+    return is_kind and not is_numbered and all(word in pond_like_words() for word in rest)

@@ -1,0 +1,162 @@
+"""What a feature is, told by columns, folders, tags and remarks of strangers' files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pytest
+
+from farm_files import DEPOT, faults_of, geojson, ids, kml, kml_polygon, placemark, polygon
+from pondhop.farm import Farm, read_farm
+
+
+def codes(folder: Path, properties: Sequence[Mapping[str, object]], *, prefix: str = "P") -> Path:
+    """Outlines with codes for names, which say nothing of what they are."""
+    features = [
+        polygon(index % 3, index // 3, **{"name": f"{prefix}{index + 1}", **given})
+        for index, given in enumerate(properties)
+    ]
+    return geojson(folder, *features)
+
+
+def of_kinds(folder: Path, column: str, *kinds: str | None) -> Path:
+    return codes(folder, [{column: kind} for kind in kinds])
+
+
+def read(path: Path) -> Farm:
+    return read_farm(path, depot=DEPOT)
+
+
+# ---------------------------------------------------------------------------------------------- columns of kinds
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        *("Layer", "LAYER", "fclass", "landuse", "land_cover", "usage", "use", "group", "OBJ_TYPE", "what", "category"),
+        *("用途", "类别", "Loại đất", "tipo", "uso", "ประเภท", "उपयोग", "الاستخدام", "xyz", "field_7"),
+    ],
+)
+@pytest.mark.parametrize(
+    ("pond", "others", "num_no_fly"),
+    [
+        ("pond", ("road", "building", "boundary", "no-fly", "office"), 1),
+        ("鱼塘", ("道路", "房屋", "禁飞区"), 1),
+        ("Ao nuôi", ("Đường", "Nhà kho", "Vùng cấm bay"), 1),
+        ("Estanque", ("Camino", "Oficina", "Lindero"), 0),
+        ("viveiro", ("estrada", "escritório"), 0),
+        ("Kolam", ("Jalan", "Kantor"), 0),
+        ("Aquaculture", ("Road", "Warehouse"), 0),
+    ],
+)
+def test_a_column_of_kinds_tells_ponds_from_other_things(
+    tmp_path: Path, column: str, pond: str, others: tuple[str, ...], num_no_fly: int
+) -> None:
+    farm = read(of_kinds(tmp_path, column, *[pond] * 4, *others))
+    assert ids(farm) == ["P1", "P2", "P3", "P4"]
+    assert len(farm.no_fly) == num_no_fly
+    assert all(any(f"its {column} is {other!r}" in note for note in farm.notes) for other in others)
+
+
+@pytest.mark.parametrize(
+    ("pond", "other"), [("Water", "Built-up"), ("水域", "建设用地"), ("aqua", "other"), ("water", "river")]
+)
+def test_kinds_of_land_are_understood(tmp_path: Path, pond: str, other: str) -> None:
+    assert ids(read(of_kinds(tmp_path, "Layer", *[pond] * 4, other))) == ["P1", "P2", "P3", "P4"]
+
+
+def test_a_kind_without_a_word_is_asked_for_beside_ponds(tmp_path: Path) -> None:
+    [(place, message, action)] = faults_of(of_kinds(tmp_path, "Layer", *["pond"] * 4, "Krempel"), depot=DEPOT)
+    assert place == "features[4]"
+    assert message == "'P5': is this a pond? its Layer is 'Krempel', and that of others is 'pond'"
+    assert "role" in action
+    features = [{"Layer": "pond", "role": None}] * 4 + [{"Layer": "Krempel", "role": "pond"}]
+    assert len(read(codes(tmp_path, features)).ponds) == 5
+
+
+def test_a_fault_names_the_id_where_there_is_no_name(tmp_path: Path) -> None:
+    features = [polygon(at, 0, id=f"A{at}", Layer=kind) for at, kind in enumerate(["pond", "pond", "Krempel"])]
+    [(_, message, _)] = faults_of(geojson(tmp_path, *features), depot=DEPOT)
+    assert message.startswith("'A2': is this a pond? its Layer is 'Krempel'")
+
+
+def test_a_fault_names_both_name_and_id(tmp_path: Path) -> None:
+    features = [{"id": 70 + at, "Layer": kind} for at, kind in enumerate(["pond", "pond", "Krempel"])]
+    [(_, message, _)] = faults_of(codes(tmp_path, features), depot=DEPOT)
+    assert message.startswith("'P3' (id 72): is this a pond? its Layer is 'Krempel'")
+
+
+def test_words_for_other_things_under_any_heading_are_asked_for(tmp_path: Path) -> None:
+    faults = faults_of(of_kinds(tmp_path, "xyz", *[None] * 4, "road", "building"), depot=DEPOT)
+    assert [place for place, _, _ in faults] == ["features[4]", "features[5]"]
+    assert ids(read(of_kinds(tmp_path, "Layer", *[None] * 4, "road", "building"))) == ["P1", "P2", "P3", "P4"]
+
+
+@pytest.mark.parametrize(
+    ("column", "values"),
+    [
+        ("water_source", ["canal", "river", "canal", "well"]),
+        ("Near", ["road", "office", "road", "office"]),
+        ("Aerator", ["paddle wheel", "blower", "paddle wheel", "blower"]),
+        ("species", ["tilapia", "shrimp", "tilapia", "shrimp"]),
+        ("type", ["nursery", "grow-out", "nursery", "Broodstock"]),
+        ("type", ["earthen", "fish pond", "lined", "concrete"]),
+        ("Layer", ["A", "B", "A", "pond"]),
+        ("Farm", ["Finca Norte", "Finca Sur", "Finca Sur", "Finca Norte"]),
+        ("block", ["Zone A", "Zone B", "Zone A", "Zone B"]),
+    ],
+)
+def test_what_a_column_says_of_ponds_makes_no_doubt(tmp_path: Path, column: str, values: list[str]) -> None:
+    farm = read(of_kinds(tmp_path, column, *values))
+    assert ids(farm) == ["P1", "P2", "P3", "P4"]
+    assert not farm.doubts
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "reason"),
+    [
+        ("Tank 5", "building", "it is called 'Tank 5', but its Layer is 'building'"),
+        ("House 5", "pond", "it is called 'House 5', but its Layer is 'pond'"),
+    ],
+)
+def test_a_name_and_a_kind_that_contradict_each_other_are_asked_for(
+    tmp_path: Path, name: str, kind: str, reason: str
+) -> None:
+    features = [{"Layer": "pond"}] * 4 + [{"Layer": kind, "name": name}]
+    [(_, message, _)] = faults_of(codes(tmp_path, features), depot=DEPOT)
+    assert reason in message
+
+
+# ------------------------------------------------------------------------------------------------------- folders
+
+
+def in_folder(name: str, *names: str, row: int = 0) -> str:
+    inside = "".join(placemark(own, kml_polygon(column, row)) for column, own in enumerate(names))
+    return f"<Folder><name>{name}</name>{inside}</Folder>"
+
+
+@pytest.mark.parametrize("folder", ["Ponds", "鱼塘", "Ao nuôi", "Estanques"])
+def test_what_lies_in_a_folder_beside_that_of_the_ponds_is_asked_for(tmp_path: Path, folder: str) -> None:
+    ponds = in_folder(folder, "A1", "A2", "A3")
+    [(_, message, _)] = faults_of(kml(tmp_path, ponds, in_folder("Krempel", "K7", row=1)), depot=DEPOT)
+    assert message == f"'K7': is this a pond? it lies in 'Krempel', and ponds lie in {folder!r}"
+    [(_, message, _)] = faults_of(kml(tmp_path, ponds, placemark("K7", kml_polygon(0, 1))), depot=DEPOT)
+    assert message == f"'K7': is this a pond? it lies in no folder, and ponds lie in {folder!r}"
+
+
+def test_a_folder_that_holds_the_whole_file_says_nothing(tmp_path: Path) -> None:
+    inner = in_folder("Norte", "A1", "A2") + in_folder("Krempel", "K1", row=1)
+    whole = f"<Folder><name>Pond survey</name>{inner}</Folder>"
+    assert ids(read(kml(tmp_path, whole))) == ["A1", "A2", "K1"]
+
+
+@pytest.mark.parametrize("folder", ["Nursery", "Block B", "B", "2024", "North"])
+def test_folders_called_as_parts_of_farms_are_beside_those_of_ponds(tmp_path: Path, folder: str) -> None:
+    path = kml(tmp_path, in_folder("Ponds", "A1", "A2"), in_folder(folder, "B1", row=1))
+    assert ids(read(path)) == ["A1", "A2", "B1"]
+
+
+def test_names_say_what_folders_do_not(tmp_path: Path) -> None:
+    path = kml(tmp_path, in_folder("Ponds", "A1", "A2"), in_folder("Krempel", "Pond 7", "Office", row=1))
+    assert ids(read(path)) == ["A1", "A2", "Pond 7"]
