@@ -160,3 +160,64 @@ def test_folders_called_as_parts_of_farms_are_beside_those_of_ponds(tmp_path: Pa
 def test_names_say_what_folders_do_not(tmp_path: Path) -> None:
     path = kml(tmp_path, in_folder("Ponds", "A1", "A2"), in_folder("Krempel", "Pond 7", "Office", row=1))
     assert ids(read(path)) == ["A1", "A2", "Pond 7"]
+
+
+# ---------------------------------------------------------------------------------------------------- tags of maps
+
+WATER = {"natural": "water"}
+TAGGED = [{"natural": "water", "water": "pond"}, {"landuse": "aquaculture"}, {"water": "basin"}, {"natural": "water"}]
+
+
+@pytest.mark.parametrize("value", ["river", "canal", "ditch", "stream", "moat", "wastewater", "lock", "drain"])
+@pytest.mark.parametrize("general", [WATER, {**WATER, "landuse": "basin"}, {"osm_id": "7"}, {}])
+def test_rivers_and_canals_drawn_as_areas_are_no_ponds(tmp_path: Path, value: str, general: Mapping[str, str]) -> None:
+    path = codes(tmp_path, [*TAGGED, {**general, "water": value}])
+    if general:
+        farm = read(path)
+        assert ids(farm) == ["P1", "P2", "P3", "P4"]
+        assert any(f"it has water={value}" in note for note in farm.notes)
+    else:
+        # A table may say in such a column where the water comes from.
+        [(_, message, _)] = faults_of(path, depot=DEPOT)
+        assert f"'P5': is this a pond? it has water={value}" in message
+
+
+@pytest.mark.parametrize("value", ["riverbank", "dock", "canal", "boatyard", "lock_gate"])
+def test_waterways_are_no_ponds(tmp_path: Path, value: str) -> None:
+    assert len(read(codes(tmp_path, [*TAGGED, {**WATER, "waterway": value}])).ponds) == 4
+
+
+@pytest.mark.parametrize(
+    "packed",
+    ['"water"=>"river"', '"intermittent"=>"no","water"=>"canal"', '"waterway"=>"riverbank"', {"water": "moat"}],
+)
+def test_tags_in_one_column_are_read(tmp_path: Path, packed: object) -> None:
+    river = {"osm_id": "5", "natural": "water", "other_tags": packed}
+    assert ids(read(codes(tmp_path, [*TAGGED, river]))) == ["P1", "P2", "P3", "P4"]
+
+
+@pytest.mark.parametrize(
+    "tags",
+    [
+        {**WATER, "water": "lake"},
+        {**WATER, "water": "reservoir"},
+        {"landuse": "reservoir"},
+        {"landuse": "basin", "basin": "detention"},
+        {**WATER, "water": "blub"},
+    ],
+)
+def test_other_water_is_asked_for_beside_what_is_tagged_as_a_pond(tmp_path: Path, tags: Mapping[str, str]) -> None:
+    [(_, message, _)] = faults_of(codes(tmp_path, [*TAGGED, tags]), depot=DEPOT)
+    assert message.startswith("'P5': is this a pond? it has ")
+    assert len(read(codes(tmp_path, [*TAGGED, {**tags, "name": "Pond 5"}])).ponds) == 5
+
+
+@pytest.mark.parametrize(
+    "tags", [{"landuse": "reservoir"}, {**WATER, "water": "lake"}, {**WATER, "barrier": "fence"}, WATER]
+)
+def test_water_is_a_pond_where_nothing_else_is(tmp_path: Path, tags: Mapping[str, str]) -> None:
+    assert len(read(codes(tmp_path, [tags, tags, {"building": "yes", "osm_id": "3"}])).ponds) == 2
+
+
+def test_a_column_about_water_is_no_tag(tmp_path: Path) -> None:
+    assert len(read(codes(tmp_path, [{"water": "brackish"}, {"water": "fresh"}, {"water": "clear"}])).ponds) == 3

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from itertools import takewhile
 
 from pondhop.farm.features import NAME_COLUMNS, Feature, is_blank, normal_name, shortened
+from pondhop.farm.map_tags import OSM_KEYS, has_pond_tag, said_by_tags, tells_anything
 from pondhop.farm.vocabulary import (
     column_words,
     kind_meanings,
     pond_like_words,
-    tag_meanings,
-    tags_of_anything_else,
 )
 from pondhop.farm.words import Meaning, heading_words, is_ordinary, is_unnamed, meanings, says_only, series_of
 
@@ -22,9 +21,6 @@ REMARK_COLUMNS = column_words("remarks")
 
 POND_COLUMNS = frozenset(map(normal_name, column_words("ponds")))
 """Columns that tell one pond from another."""
-
-OSM_KEYS = tuple(dict.fromkeys((*tags_of_anything_else(), *(key for key, _ in tag_meanings()))))
-"""Tags of OpenStreetMap that say what a feature is, not what it is called."""
 
 MAX_KINDS = 30
 """A column with more values than this holds names or remarks, not kinds."""
@@ -94,6 +90,8 @@ class Surroundings:
         Outermost folders that hold the whole file, which tell nothing apart.
     pond_folder
         A folder that is named for ponds; blank if none is, or all features lie in it.
+    has_tagged_ponds
+        Whether tags of OpenStreetMap say of any feature that it is a pond beyond doubt.
     """
 
     kind_columns: tuple[str, ...] = ()
@@ -102,6 +100,7 @@ class Surroundings:
     has_layers: bool = False
     num_shared_folders: int = 0
     pond_folder: str = ""
+    has_tagged_ponds: bool = False
 
 
 def decided(text: str, *, is_line: bool) -> Meaning | None:
@@ -134,7 +133,15 @@ def surroundings_of(features: Sequence[Feature]) -> Surroundings:
                 pond_kinds.append((column, pond_kind))
         elif _holds_kinds(column, values):
             asking.append(column)
-    return Surroundings(tuple(known), tuple(asking), tuple(pond_kinds), len(paths) > 1, num_shared, pond_folder)
+    return Surroundings(
+        tuple(known),
+        tuple(asking),
+        tuple(pond_kinds),
+        len(paths) > 1,
+        num_shared,
+        pond_folder,
+        any(map(has_pond_tag, features)),
+    )
 
 
 def _num_shared(paths: Sequence[tuple[str, ...]]) -> int:
@@ -147,21 +154,19 @@ def _columns_of_texts(features: Sequence[Feature]) -> dict[str, dict[str, int]]:
     """The values of every column that holds few different texts, each with how often it stands there."""
     columns: dict[str, dict[str, int]] = {}
     names: set[str] = set()
-    too_many: set[str] = set()
+    dropped: set[str] = set()
     for feature in features:
         names.add(feature.name_column)
         for column, value in feature.properties.items():
-            if column in too_many or is_blank(value):
-                continue
-            if not isinstance(value, str):
-                too_many.add(column)
-                columns.pop(column, None)
+            if column in dropped or is_blank(value):
                 continue
             values = columns.setdefault(column, {})
-            values[value] = values.get(value, 0) + 1
-            if len(values) > MAX_KINDS and normal_name(column) not in _KNOWN_KIND_COLUMNS:
-                too_many.add(column)
-                columns.pop(column)
+            if isinstance(value, str):
+                values[value] = values.get(value, 0) + 1
+            is_known = normal_name(column) in _KNOWN_KIND_COLUMNS
+            if not is_known and (not isinstance(value, str) or len(values) > MAX_KINDS):
+                dropped.add(column)
+                del columns[column]
     return {column: values for column, values in columns.items() if normal_name(column) not in names}
 
 
@@ -196,7 +201,7 @@ def _of_kind(value: str) -> Meaning | None:
 
 def hint_of(feature: Feature, around: Surroundings) -> Hint | None:
     """The nearest thing to a feature that says what it is, else the nearest that puts it in doubt."""
-    hints = [*_kinds(feature, around), *_tags(feature), *_folders(feature, around), *_styles(feature)]
+    hints = [*_kinds(feature, around), *_tags(feature, around), *_folders(feature, around), *_styles(feature)]
     doubts = (hint for hint in hints if hint.meaning is Meaning.UNCERTAIN)
     return next((hint for hint in hints if hint.meaning is not Meaning.UNCERTAIN), next(doubts, None))
 
@@ -206,7 +211,7 @@ def _kinds(feature: Feature, around: Surroundings) -> Iterator[Hint]:
     pond_kinds = dict(around.pond_kinds)
     for column in (*around.kind_columns, *around.asking_columns):
         value = feature.properties.get(column)
-        if not isinstance(value, str) or is_blank(value) or (column, value) in tag_meanings():
+        if not isinstance(value, str) or is_blank(value) or tells_anything(column, value):
             continue
         meaning, because = _of_kind(value), f"its {column} is {shortened(value)!r}"
         if column in around.asking_columns:
@@ -239,18 +244,6 @@ def _styles(feature: Feature) -> Iterator[Hint]:
         yield Hint(meaning, f"its style is {shortened(feature.style)!r}", feature.style)
 
 
-def _tags(feature: Feature) -> Iterator[Hint]:
-    """What the tags of OpenStreetMap say, and columns that are themselves a question: ``no_fly: yes``."""
-    is_osm = any(key in feature.properties for key in ("@id", "osm_id", "osm_way_id"))
-    for key, value in feature.properties.items():
-        if is_blank(value) or str(value).strip().lower() in {"no", "false", "0", "none"}:
-            continue
-        text = f"{key}={str(value)[:40]}"
-        told = f"it has {text}"
-        meaning = tag_meanings().get((key, str(value)))
-        if meaning is not None:
-            yield Hint(Meaning[meaning.upper()], told, text, is_own=True)
-        elif key in tags_of_anything_else() and (is_osm or str(value) == "yes"):
-            yield Hint(Meaning.OTHER, told, text, is_own=True)
-        elif str(value).strip().lower() in {"yes", "true", "1"} and meanings(key) == {Meaning.NO_FLY}:
-            yield Hint(Meaning.NO_FLY, told, text)
+def _tags(feature: Feature, around: Surroundings) -> Iterator[Hint]:
+    for meaning, text in said_by_tags(feature, has_sure_ponds=around.has_tagged_ponds):
+        yield Hint(meaning, f"it has {text}", text, is_own=meaning is not Meaning.NO_FLY)

@@ -47,13 +47,18 @@ def tags_of_anything_else() -> tuple[str, ...]:
 @cache
 def tag_meanings() -> dict[tuple[str, str], str]:
     """What tags of OpenStreetMap say, by key and value: the name of a meaning."""
-    groups = {name: tags for name, tags in _tables()["map_tags"].items() if name != "anything"}
-    return {
-        (key, value): meaning
-        for meaning, tags in groups.items()
-        for key, values in tags.items()
-        for value in _parted(values)
-    }
+    groups = {name: tags for name, tags in _tables()["map_tags"].items() if name not in {"anything", "perhaps_pond"}}
+    return {tag: meaning for meaning, tags in groups.items() for tag in _tags(tags)}
+
+
+@cache
+def perhaps_pond_tags() -> frozenset[tuple[str, str]]:
+    """Tags of OpenStreetMap of water that may be a pond, by key and value."""
+    return frozenset(_tags(_tables()["map_tags"]["perhaps_pond"]))
+
+
+def _tags(table: dict[str, str]) -> list[tuple[str, str]]:
+    return [(key, value) for key, values in table.items() for value in _parted(values)]
 
 
 @cache
