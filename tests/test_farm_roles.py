@@ -221,3 +221,73 @@ def test_water_is_a_pond_where_nothing_else_is(tmp_path: Path, tags: Mapping[str
 
 def test_a_column_about_water_is_no_tag(tmp_path: Path) -> None:
     assert len(read(codes(tmp_path, [{"water": "brackish"}, {"water": "fresh"}, {"water": "clear"}])).ponds) == 3
+
+
+# --------------------------------------------------------------------------------------------------------- remarks
+
+AGAINST = [
+    *("Không bay", "không được bay qua", "Cấm bay", "no volar", "No sobrevolar!", "não sobrevoar", "NAO VOAR", "禁飞"),
+    *("请勿飞行", "jangan terbang", "Dilarang terbang di sini", "ne pas survoler", "ห้ามบิน", "飛行しないでください"),
+    *("उड़ान निषिद्ध", "لا تطير", "do not fly near the house", "stay away", "No fly - eagle nest", "out of service"),
+    *("do not sample", "Do not sample until May", "drained", "Drained for repair", "pond is dry", "Currently empty"),
+    *("Closed", "not in use", "Fuera de servicio", "Vacío", "fora de uso", "seca", "hors service", "à sec"),
+    *("ngừng sử dụng", "Ao cạn nước", "Khô", "tidak dipakai", "kosong", "停用", "已排干", "空", "干塘", "사용 안함"),
+    *("ไม่มีน้ำ", "खाली", "خارج الخدمة", "не используется", "terk edilmiş"),
+]
+
+
+@pytest.mark.parametrize("remark", AGAINST)
+@pytest.mark.parametrize("column", ["remarks", "Ghi chú", "备注", "status", "Tình trạng"])
+def test_a_remark_against_sampling_is_asked_for(tmp_path: Path, remark: str, column: str) -> None:
+    for name in ("P5", "Pond 5"):
+        [(place, message, action)] = faults_of(
+            codes(tmp_path, [{}] * 4 + [{"name": name, column: remark}]), depot=DEPOT
+        )
+        assert (place, f"'{name}': is this a pond? its {column} is {remark!r}" in message) == ("features[4]", True)
+        assert "role" in action
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        *("not drained", "no water quality issues", "dry season depth 1 m", "aerator out of order", "stocked 2020"),
+        *("abandoned house nearby", "Active", "in use", "do not use antibiotics", "empty shells on the bank"),
+        *("đang hoạt động", "en uso", "使用中", "未使用抗生素", "cerca de zona prohibida"),
+        "closed to traffic in the north",
+    ],
+)
+def test_other_remarks_are_no_reason_to_ask(tmp_path: Path, remark: str) -> None:
+    assert len(read(codes(tmp_path, [{}, {}, {"remarks": remark}])).ponds) == 3
+
+
+@pytest.mark.parametrize("column", ["xyz", "Anweisung für Piloten", "f_12"])
+def test_orders_under_any_heading_are_heard(tmp_path: Path, column: str) -> None:
+    assert faults_of(codes(tmp_path, [{}, {}, {column: "Do not fly here"}]), depot=DEPOT)
+    assert len(read(codes(tmp_path, [{}, {}, {column: "dry"}])).ponds) == 3
+
+
+@pytest.mark.parametrize(
+    ("column", "against", "in_favour"),
+    [
+        ("active", False, True),
+        ("sample", "no", "yes"),
+        ("In use", "N", "Y"),
+        ("Có nước", "không", "có"),
+        ("启用", "否", "是"),
+        ("fly", 0, 1),
+        ("drained", True, False),
+        ("out_of_service", "yes", "no"),
+    ],
+)
+def test_an_answer_against_sampling_is_asked_for(
+    tmp_path: Path, column: str, against: object, in_favour: object
+) -> None:
+    [(_, message, _)] = faults_of(codes(tmp_path, [{}, {}, {column: against}]), depot=DEPOT)
+    assert f"'P3': is this a pond? its {column} is " in message
+    assert len(read(codes(tmp_path, [{}, {}, {column: in_favour}])).ponds) == 3
+
+
+@pytest.mark.parametrize("name", ["Pond 5 (out of service)", "P5 - drained", "Ao 5, không lấy mẫu", "5号塘 停用"])
+def test_a_name_that_speaks_against_sampling_is_asked_for(tmp_path: Path, name: str) -> None:
+    [(_, message, _)] = faults_of(codes(tmp_path, [{}] * 4 + [{"name": name}]), depot=DEPOT)
+    assert "is this a pond? it is called" in message

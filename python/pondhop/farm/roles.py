@@ -7,7 +7,6 @@ In doubt a feature is a fault that names it: a pond too few is told, a building 
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -15,20 +14,18 @@ from pondhop.errors import Fault
 from pondhop.farm.features import (
     Feature,
     Source,
-    clean_text,
     left_out_note,
     listed,
     normal_name,
-    present_columns,
     shortened,
 )
-from pondhop.farm.hints import REMARK_COLUMNS, ROLE_COLUMNS, Hint, Surroundings, decided, hint_of, surroundings_of
+from pondhop.farm.hints import ROLE_COLUMNS, Hint, Surroundings, decided, hint_of, surroundings_of
+from pondhop.farm.remarks import remark_against
 from pondhop.farm.shapes import closed_line
 from pondhop.farm.vocabulary import pond_like_words
 from pondhop.farm.words import (
     Meaning,
     is_unnamed,
-    keeps_drones_out,
     meanings,
     series_of,
     thing_named_for_pond,
@@ -223,21 +220,11 @@ def _is_surely_pond(feature: Feature, verdict: Verdict) -> bool:
 
 
 def _with_remarks(feature: Feature, verdict: Verdict) -> Verdict:
-    """What a feature is, in doubt where it may be a pond and a remark on it says that nobody flies there."""
+    """What a feature is, in doubt where it may be a pond and a remark says that nobody flies there or samples it."""
     if verdict.is_explicit or not _may_be_pond(verdict):
         return verdict
-    for key in present_columns(tuple(feature.properties), REMARK_COLUMNS):
-        value = feature.properties[key]
-        remark = _without_tags(value) if isinstance(value, str) else ""
-        if keeps_drones_out(remark):
-            return Verdict(None, f"its {key} is {shortened(clean_text(remark), 60)!r}", is_doubtful=True)
-    return verdict
-
-
-def _without_tags(text: str) -> str:
-    """A remark without the HTML in which map programs wrap it; what stands in lines of its own stays apart."""
-    lines = re.sub(r"<\s*/?\s*(?:br|p|tr|div|li|table|h\d)\b[^>]*>", "\n", text, flags=re.IGNORECASE)
-    return re.sub(r"<[^>]*>", " ", lines).strip()
+    remark = remark_against(feature)
+    return Verdict(None, remark, is_doubtful=True) if remark else verdict
 
 
 def _may_be_pond(verdict: Verdict) -> bool:
