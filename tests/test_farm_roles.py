@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from farm_files import DEPOT, faults_of, geojson, ids, kml, kml_polygon, placemark, polygon
+from farm_files import DEPOT, faults_of, geojson, ids, kml, kml_polygon, placemark, polygon, shape
 from pondhop.farm import Farm, read_farm
 
 
@@ -291,3 +291,143 @@ def test_an_answer_against_sampling_is_asked_for(
 def test_a_name_that_speaks_against_sampling_is_asked_for(tmp_path: Path, name: str) -> None:
     [(_, message, _)] = faults_of(codes(tmp_path, [{}] * 4 + [{"name": name}]), depot=DEPOT)
     assert "is this a pond? it is called" in message
+
+
+# ---------------------------------------------------------------------------------------------------------- series
+
+
+def named(folder: Path, *names: str) -> Path:
+    return codes(folder, [{"name": name} for name in names])
+
+
+def numbered(word: str, number: int) -> list[str]:
+    return [f"{word}{at}" for at in range(1, number + 1)]
+
+
+@pytest.mark.parametrize(
+    ("others", "word", "number"),
+    [
+        *(([], "CTR", 6), (["P1", "P2"], "CTR", 4), (["P1", "P2"], "Ctr ", 2), (["P1", "P2"], "TFR-", 3)),
+        *((numbered("P", 4), "LAB", 2), (numbered("P", 4), "EV", 3), (numbered("Pond ", 3), "HQ", 3)),
+        *((numbered("P", 4), "House ", 4), (numbered("P", 9), "Hatchery ", 3), (["P1", "P2"], "House ", 2)),
+        *((numbered("P", 4), "温室", 3), (numbered("P", 4), "Nhà ", 4), (numbered("P", 4), "Galpón ", 3)),
+        *((numbered("A", 3), "Greenhouses #", 3), (numbered("Pond ", 4), "Hatchery ", 4)),
+    ],
+)
+def test_a_series_that_may_be_ponds_is_one_question(tmp_path: Path, others: list[str], word: str, number: int) -> None:
+    series = numbered(word, number)
+    [(place, message, action)] = faults_of(named(tmp_path, *others, *series), depot=DEPOT)
+    assert place == f"features[{len(others)}]"
+    assert f"are these ponds? {number} features with the word {word.strip(' #-').casefold()!r}" in message
+    assert all(repr(name) in message for name in series)
+    assert "role" in action
+    answered = [{"name": name} for name in others] + [{"name": name, "role": "pond"} for name in series]
+    assert ids(read(codes(tmp_path, answered))) == [*others, *series]
+
+
+@pytest.mark.parametrize(
+    ("series", "num_no_fly"),
+    [
+        (numbered("NFZ", 4), 4),
+        (numbered("No fly ", 3), 3),
+        (["CTR"], 1),
+        (["CTR1"], 1),
+        (numbered("House ", 2), 0),
+        (numbered("Gate ", 4), 0),
+        (numbered("Warehouse ", 3), 0),
+        (["Lab 1", "Lab 2"], 0),
+    ],
+)
+def test_a_series_that_says_what_it_is_is_not_asked_for(tmp_path: Path, series: list[str], num_no_fly: int) -> None:
+    farm = read(named(tmp_path, *numbered("P", 6), *series))
+    assert (ids(farm), len(farm.no_fly)) == (numbered("P", 6), num_no_fly)
+    assert any(series[0] in note for note in farm.notes)
+
+
+def test_folders_tell_what_a_series_is(tmp_path: Path) -> None:
+    houses = in_folder("Buildings", *numbered("House ", 4), row=1)
+    assert ids(read(kml(tmp_path, in_folder("Ponds", "A1", "A2"), houses))) == ["A1", "A2"]
+    ponds = in_folder("Ponds", *numbered("CTR", 4), row=1)
+    assert ids(read(kml(tmp_path, ponds, in_folder("Buildings", "B1")))) == numbered("CTR", 4)
+
+
+def test_houses_that_are_points_among_outlines_are_houses(tmp_path: Path) -> None:
+    outlines = [polygon(column, 0, name=f"P{column}") for column in range(3)]
+    houses = [shape("Point", [105.72, 10.11 + 0.001 * at], name=f"House {at}") for at in range(1, 5)]
+    assert len(read(geojson(tmp_path, *outlines, *houses)).ponds) == 3
+
+
+# ------------------------------------------------------------------------------------------- words of many languages
+
+THINGS = {
+    "Chinese": """
+        房屋, 员工宿舍, 饲料间, 孵化室, 泵房, 发电机房, 化验室, 大门, 停车场, 村道, 塘埂, 大坝, 水渠, 排水沟,
+        高压线, 看塘房, 车间, 温室
+    """,
+    "Chinese (traditional)": """
+        飼料室, 孵化場, 抽水機房, 發電機房, 檢驗室, 警衛室, 停車場, 產業道路, 魚塭堤, 渠道, 高壓線, 辦公樓,
+        工寮, 民宅
+    """,
+    "Vietnamese": """
+        nhà kho, kho cám, trại giống, trạm bơm, phòng thí nghiệm, ký túc xá, bãi đỗ xe, bờ ao, đê bao, mương,
+        cột điện, chòi canh
+    """,
+    "Hindi": """
+        गोदाम, हैचरी, पंप घर, जनरेटर, प्रयोगशाला, छात्रावास, मुख्य द्वार, पार्किंग, सड़क, तटबंध, नहर, नाली,
+        बिजली लाइन, तालाब की मेड़
+    """,
+    "Arabic": """
+        مستودع, مفرخة, محطة ضخ, مولد كهرباء, مختبر, سكن العمال, بوابة, موقف سيارات, طريق, سد, قناة, خندق,
+        خط كهرباء, مبنى
+    """,
+    "Portuguese": """
+        armazém, larvicultura, casa de bombas, gerador, alojamento, portão, estacionamento, estrada, talude,
+        vala, linha de energia
+    """,
+    "Spanish": """
+        bodega de alimento, caseta, generador, dormitorio, garita, parqueadero, camino, terraplén, acequia,
+        línea eléctrica, cocina
+    """,
+    "Indonesian": """
+        gudang pakan, pembenihan, rumah pompa, genset, asrama, gerbang, tempat parkir, jalan tani, pematang,
+        selokan, tiang listrik
+    """,
+    "Thai": """
+        โกดัง, โรงเพาะฟัก, โรงสูบน้ำ, เครื่องปั่นไฟ, ห้องแล็บ, หอพัก, ที่จอดรถ, ถนน, คันบ่อ, คูน้ำ, สายไฟ,
+        ป้อมยาม, โรงเรือน
+    """,
+    "Bengali": """
+        গুদাম, হ্যাচারি, পাম্প ঘর, জেনারেটর, পরীক্ষাগার, ছাত্রাবাস, গেট, পার্কিং, সড়ক, বেড়িবাঁধ,
+        পুকুর পাড়, নালা, বিদ্যুৎ লাইন
+    """,
+    "Japanese": "餌小屋, 孵化場, 発電機室, 実験室, 宿舎, 駐車場, 農道, 堤防, 排水路, 送電線, 管理棟, 温室",
+    "Korean": "사료창고, 부화장, 발전실, 실험실, 기숙사, 주차장, 제방, 배수로, 송전선, 경비실",
+    "French": """
+        entrepôt, écloserie, groupe électrogène, laboratoire, dortoir, parking, chemin, digue, fossé,
+        ligne électrique
+    """,
+    "Turkish": "yem deposu, kuluçkahane, jeneratör, laboratuvar, otopark, yol, hendek, mutfak, ofis",
+    "English": """
+        feed mill, pond dike, transmission line, driveway, machine room, dormitory, oxygen tank, riverbank,
+        container
+    """,
+}
+
+
+def things(language: str) -> list[str]:
+    return [word.strip() for word in THINGS[language].split(",")]
+
+
+@pytest.mark.parametrize("language", THINGS)
+def test_things_beside_ponds_are_known_by_their_names(tmp_path: Path, language: str) -> None:
+    words = things(language)
+    farm = read(named(tmp_path, *numbered("P", len(words)), *words))
+    assert ids(farm) == numbered("P", len(words))
+
+
+@pytest.mark.parametrize("language", THINGS)
+def test_things_beside_ponds_are_known_by_their_kinds_and_folders(tmp_path: Path, language: str) -> None:
+    words = things(language)
+    assert ids(read(of_kinds(tmp_path, "xyz", "pond", "pond", *words))) == ["P1", "P2"]
+    folders = [in_folder(word, f"K{row}", row=row) for row, word in enumerate(words, start=1)]
+    assert ids(read(kml(tmp_path, in_folder("Ponds", "A1", "A2"), *folders))) == ["A1", "A2"]

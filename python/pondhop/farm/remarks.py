@@ -21,7 +21,7 @@ _QUESTIONS = frozenset(map(normal_name, column_words("questions")))
 
 def remark_against(feature: Feature) -> str:
     """The remark that speaks against sampling a feature, for messages: ``its status is 'drained'``; else blank."""
-    if speaks_against(feature.name, is_remark=False):
+    if Meaning.NO_FLY not in meanings(feature.name) and speaks_against(feature.name, is_remark=False):
         return f"it is called {feature.name!r}"
     for column, value in feature.properties.items():
         plain = normal_name(column)

@@ -21,6 +21,7 @@ from pondhop.farm.features import (
 )
 from pondhop.farm.hints import ROLE_COLUMNS, Hint, Surroundings, decided, hint_of, surroundings_of
 from pondhop.farm.remarks import remark_against
+from pondhop.farm.series import doubtful_series
 from pondhop.farm.shapes import closed_line
 from pondhop.farm.vocabulary import pond_like_words
 from pondhop.farm.words import (
@@ -123,7 +124,7 @@ def sort_by_role(features: Iterable[Feature], source: Source) -> Sorted:
     around = surroundings_of(source.features)
     verdicts = [(feature, _verdict(feature, around, source)) for feature in features]
     judged = [(feature, verdict) for feature, verdict in verdicts if verdict is not None]
-    for feature, by_name in _with_series(judged, source):
+    for feature, by_name in _with_series(_without_doubtful_series(judged, around, source), source):
         verdict = _with_remarks(feature, by_name)
         if verdict.is_doubtful or (verdict.meaning is Meaning.UNCERTAIN and not feature.find(*_DECLARING_COLUMNS)):
             doubtful.append((feature, verdict.because))
@@ -196,6 +197,46 @@ def _with_series(judged: Sequence[tuple[Feature, Verdict]], source: Source) -> l
         action = "say so in a property role of each: pond, station or other; or rename the ponds, as in 'Pond 7'"
         source.faults.append(Fault(members[0][0].place, message, action))
     return [(feature, verdict) for feature, verdict in judged if feature.place not in asked]
+
+
+def _without_doubtful_series(
+    judged: Sequence[tuple[Feature, Verdict]], around: Surroundings, source: Source
+) -> list[tuple[Feature, Verdict]]:
+    """What each feature is, without series of one word that may be ponds, which are one fault each.
+
+    Ponds they are if their folder, or a column that only ponds have, says so; and none if anything beside their names
+    says what they are. A point among outlines is not drawn as the ponds are.
+    """
+    rivals = [feature for feature, verdict in judged if _may_be_pond(verdict) and not feature.is_hidden]
+    are_outlines = any(map(_is_closed, rivals))
+    named: list[tuple[Feature, Meaning]] = []
+    ponds: set[str] = set()
+    for feature, verdict in judged:
+        is_told_by_name = not verdict.is_explicit and not _may_be_pond(verdict) and verdict.text == feature.name
+        if verdict.meaning is None or not is_told_by_name or _is_line(feature) or (are_outlines and _is_point(feature)):
+            continue
+        hint = hint_of(feature, around)
+        if hint is None or hint.meaning in {Meaning.POND, Meaning.UNCERTAIN}:
+            named.append((feature, verdict.meaning))
+            if (hint and hint.meaning is Meaning.POND) or feature.find(*_DECLARING_COLUMNS):
+                ponds.add(feature.place)
+    asked: set[str] = set()
+    for word, members in doubtful_series(named, len(rivals)).items():
+        asked.update(feature.place for feature in members)
+        questions = [feature for feature in members if feature.place not in ponds]
+        if questions:
+            names = listed(map(_told_with_id, questions), MAX_TOLD)
+            message = f"are these ponds? {counted(len(questions), 'feature')} with the word {word!r}: {names}"
+            action = (
+                "say so in a property role of each: pond, no_fly or other; or rename them, as in 'Pond 7' or 'No fly 1'"
+            )
+            source.faults.append(Fault(questions[0].place, message, action))
+    ponds &= asked
+    return [
+        (feature, Verdict(Meaning.POND) if feature.place in ponds else verdict)
+        for feature, verdict in judged
+        if feature.place not in asked or feature.place in ponds
+    ]
 
 
 def _series_to_judge(

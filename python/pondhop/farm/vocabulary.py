@@ -83,3 +83,9 @@ def remark_words(kind: str) -> tuple[str, ...]:
 def pond_like_words() -> frozenset[str]:
     """Words in names of ponds that are no words for ponds."""
     return frozenset(word.casefold() for word in _parted(_tables()["pond_like"]["words"]))
+
+
+@cache
+def series_words(kind: str) -> frozenset[str]:
+    """Words for buildings that may hold ponds, or codes that mean one thing only, however many are numbered."""
+    return frozenset(word.casefold() for word in _parted(_tables()["series"][kind]))
