@@ -75,6 +75,17 @@ def test_a_kind_without_a_word_is_asked_for_beside_ponds(tmp_path: Path) -> None
     assert len(read(codes(tmp_path, features)).ponds) == 5
 
 
+@pytest.mark.parametrize("kind", ["RD", "0", "B", "BLDG", "TEXT_LABELS"])
+def test_a_code_beside_kinds_of_ponds_is_asked_for(tmp_path: Path, kind: str) -> None:
+    [(_, message, _)] = faults_of(of_kinds(tmp_path, "LAYER", *["PONDS"] * 4, kind), depot=DEPOT)
+    assert f"its LAYER is {kind!r}, and that of others is 'PONDS'" in message
+
+
+def test_headings_without_their_accents_are_known(tmp_path: Path) -> None:
+    [(_, message, _)] = faults_of(of_kinds(tmp_path, "loai_dat", "ao", "ao", "duong"), depot=DEPOT)
+    assert "its loai_dat is 'duong', and that of others is 'ao'" in message
+
+
 def test_a_fault_names_the_id_where_there_is_no_name(tmp_path: Path) -> None:
     features = [polygon(at, 0, id=f"A{at}", Layer=kind) for at, kind in enumerate(["pond", "pond", "Krempel"])]
     [(_, message, _)] = faults_of(geojson(tmp_path, *features), depot=DEPOT)
@@ -102,7 +113,8 @@ def test_words_for_other_things_under_any_heading_are_asked_for(tmp_path: Path) 
         ("species", ["tilapia", "shrimp", "tilapia", "shrimp"]),
         ("type", ["nursery", "grow-out", "nursery", "Broodstock"]),
         ("type", ["earthen", "fish pond", "lined", "concrete"]),
-        ("Layer", ["A", "B", "A", "pond"]),
+        ("Layer", ["A", "B", "A", "B"]),
+        ("type", ["MultiPolygon", "pond", "MultiPolygon", "pond"]),
         ("Farm", ["Finca Norte", "Finca Sur", "Finca Sur", "Finca Norte"]),
         ("block", ["Zone A", "Zone B", "Zone A", "Zone B"]),
     ],

@@ -13,7 +13,16 @@ from pondhop.farm.vocabulary import (
     kind_meanings,
     pond_like_words,
 )
-from pondhop.farm.words import Meaning, heading_words, is_ordinary, is_unnamed, meanings, says_only, series_of
+from pondhop.farm.words import (
+    Meaning,
+    heading_words,
+    is_ordinary,
+    is_unnamed,
+    meanings,
+    says_only,
+    series_of,
+    without_accents,
+)
 
 ROLE_COLUMNS = column_words("roles")
 KIND_COLUMNS = column_words("kinds")
@@ -34,7 +43,10 @@ _THINGS = frozenset(
     {Meaning.NO_FLY, Meaning.OTHER, Meaning.DEPOT, Meaning.START, Meaning.STATION, Meaning.FENCE, Meaning.SAMPLING}
 )
 
-_KNOWN_KIND_COLUMNS = frozenset(map(normal_name, KIND_COLUMNS))
+_KNOWN_KIND_COLUMNS = frozenset(
+    normal_name(form) for name in KIND_COLUMNS for form in (name, without_accents(name).replace("đ", "d"))
+)
+"""Shapefiles have no accents in their headings."""
 
 _ORDER = (
     Meaning.POND,
@@ -193,10 +205,8 @@ def _of_kind(value: str) -> Meaning | None:
     """What a value in a column of kinds says, where some words say more than in a name: ``water``, ``other``."""
     own = kind_meanings().get(value.strip().casefold())
     meaning = Meaning[own.upper()] if own else decided(value, is_line=False)
-    words = heading_words(value)
     # A pond for storage is a pond, and a hatchery may be one: its kind alone does not tell.
-    is_pond_like = bool(words) and all(word in pond_like_words() for word in words)
-    return Meaning.UNCERTAIN if meaning is Meaning.OTHER and is_pond_like else meaning
+    return Meaning.UNCERTAIN if meaning is Meaning.OTHER and _is_of_ponds(value) else meaning
 
 
 def hint_of(feature: Feature, around: Surroundings) -> Hint | None:
@@ -216,10 +226,16 @@ def _kinds(feature: Feature, around: Surroundings) -> Iterator[Hint]:
         meaning, because = _of_kind(value), f"its {column} is {shortened(value)!r}"
         if column in around.asking_columns:
             meaning = meaning and Meaning.UNCERTAIN
-        elif meaning is None and column in pond_kinds and not is_ordinary(value):
+        elif meaning is None and column in pond_kinds and not _is_of_ponds(value):
             meaning, because = Meaning.UNCERTAIN, f"{because}, and that of others is {shortened(pond_kinds[column])!r}"
         if meaning is not None:
             yield Hint(meaning, because, value, is_own=True)
+
+
+def _is_of_ponds(value: str) -> bool:
+    """Whether a kind is one of ponds by other words, such as ``nursery``, or one that a program wrote there."""
+    words = heading_words(value)
+    return is_unnamed(value) or (bool(words) and all(word in pond_like_words() for word in words))
 
 
 def _folders(feature: Feature, around: Surroundings) -> Iterator[Hint]:

@@ -55,8 +55,13 @@ def is_spaced(letter: str) -> bool:
 def _stem(word: str) -> str:
     """A word without plural s, and without accents where it is long."""
     if len(word) >= MIN_PLAIN_LETTERS:
-        word = "".join(letter for letter in unicodedata.normalize("NFKD", word) if not unicodedata.combining(letter))
+        word = without_accents(word)
     return word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith("ss") else word
+
+
+def without_accents(text: str) -> str:
+    """A text in the plain letters of its script."""
+    return "".join(letter for letter in unicodedata.normalize("NFKD", text) if not unicodedata.combining(letter))
 
 
 def _split(text: str) -> list[str]:
