@@ -169,6 +169,13 @@ def test_folders_called_as_parts_of_farms_are_beside_those_of_ponds(tmp_path: Pa
     assert ids(read(path)) == ["A1", "A2", "B1"]
 
 
+def test_labels_and_lines_lie_in_folders_of_their_own(tmp_path: Path) -> None:
+    label = placemark("A1", "<Point><coordinates>105.7005,10.1002</coordinates></Point>")
+    line = placemark("x", "<LineString><coordinates>105.7,10.11 105.71,10.11</coordinates></LineString>")
+    path = kml(tmp_path, in_folder("Ponds", "A1", "A2"), f"<Folder><name>Krempel</name>{label}{line}</Folder>")
+    assert ids(read(path)) == ["A1", "A2"]
+
+
 def test_names_say_what_folders_do_not(tmp_path: Path) -> None:
     path = kml(tmp_path, in_folder("Ponds", "A1", "A2"), in_folder("Krempel", "Pond 7", "Office", row=1))
     assert ids(read(path)) == ["A1", "A2", "Pond 7"]
@@ -335,6 +342,17 @@ def test_a_series_that_may_be_ponds_is_one_question(tmp_path: Path, others: list
     assert "role" in action
     answered = [{"name": name} for name in others] + [{"name": name, "role": "pond"} for name in series]
     assert ids(read(codes(tmp_path, answered))) == [*others, *series]
+
+
+@pytest.mark.parametrize("series", [["CTR-A", "CTR-B"], ["1 House", "2 House", "3 House"], ["Lab A", "Lab B", "Lab C"]])
+def test_series_are_numbered_in_many_ways(tmp_path: Path, series: list[str]) -> None:
+    [(_, message, _)] = faults_of(named(tmp_path, *numbered("P", 5), *series), depot=DEPOT)
+    assert f"are these ponds? {len(series)} features" in message
+
+
+def test_ids_that_are_codes_are_ponds_where_a_column_says_so(tmp_path: Path) -> None:
+    features = [polygon(at, 0, pond_id=f"CTR{at}") for at in range(3)]
+    assert ids(read(geojson(tmp_path, *features))) == ["CTR0", "CTR1", "CTR2"]
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from itertools import takewhile
 
 from pondhop.farm.features import NAME_COLUMNS, Feature, is_blank, normal_name, shortened
 from pondhop.farm.map_tags import OSM_KEYS, has_pond_tag, said_by_tags, tells_anything
+from pondhop.farm.shapes import closed_line
 from pondhop.farm.vocabulary import (
     column_words,
     kind_meanings,
@@ -104,6 +105,8 @@ class Surroundings:
         A folder that is named for ponds; blank if none is, or all features lie in it.
     has_tagged_ponds
         Whether tags of OpenStreetMap say of any feature that it is a pond beyond doubt.
+    has_outlines
+        Whether any feature is drawn as an area.
     """
 
     kind_columns: tuple[str, ...] = ()
@@ -113,6 +116,7 @@ class Surroundings:
     num_shared_folders: int = 0
     pond_folder: str = ""
     has_tagged_ponds: bool = False
+    has_outlines: bool = False
 
 
 def decided(text: str, *, is_line: bool) -> Meaning | None:
@@ -153,6 +157,7 @@ def surroundings_of(features: Sequence[Feature]) -> Surroundings:
         num_shared,
         pond_folder,
         any(map(has_pond_tag, features)),
+        any(feature.geometry.polygons for feature in features),
     )
 
 
@@ -249,9 +254,17 @@ def _folders(feature: Feature, around: Surroundings) -> Iterator[Hint]:
         ):
             yield Hint(meaning or Meaning.UNCERTAIN, f"it lies in {folder!r}", folder)
     own = feature.folders[around.num_shared_folders :]
-    if around.pond_folder and not any(is_ordinary(folder) and not is_unnamed(folder) for folder in own):
+    is_part = any(is_ordinary(folder) and not is_unnamed(folder) for folder in own)
+    if around.pond_folder and not is_part and _is_drawn_as_pond(feature, around):
         where = f"it lies in {own[-1]!r}" if own else "it lies in no folder"
         yield Hint(Meaning.UNCERTAIN, f"{where}, and ponds lie in {around.pond_folder!r}", "")
+
+
+def _is_drawn_as_pond(feature: Feature, around: Surroundings) -> bool:
+    """Whether a feature is drawn as ponds are: open lines are roads, and points among outlines mostly labels."""
+    geometry = feature.geometry
+    is_outline = bool(geometry.polygons) or any(map(closed_line, geometry.lines))
+    return is_outline or (bool(geometry.points) and not geometry.lines and not around.has_outlines)
 
 
 def _styles(feature: Feature) -> Iterator[Hint]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 
 from pondhop.farm.features import NAME_COLUMNS, Feature, clean_text, is_blank, normal_name, shortened, text_of
-from pondhop.farm.hints import KIND_COLUMNS, REMARK_COLUMNS, ROLE_COLUMNS
+from pondhop.farm.hints import KIND_COLUMNS, POND_COLUMNS, REMARK_COLUMNS, ROLE_COLUMNS
 from pondhop.farm.vocabulary import column_words, remark_words
 from pondhop.farm.words import Meaning, is_spaced, meanings, phrases_of, words_of
 
@@ -28,6 +28,9 @@ def remark_against(feature: Feature) -> str:
         if is_blank(value) or plain in _NO_REMARK_COLUMNS or plain == feature.name_column:
             continue
         text = _without_markup(text_of(value)) if isinstance(value, str | bool | int) else ""
+        if plain in POND_COLUMNS and Meaning.NO_FLY in meanings(text):
+            # An id is a name, in which CTR may be anything.
+            continue
         is_answer = _is_answer_against(column, text)
         if is_answer or (isinstance(value, str) and speaks_against(text, is_remark=plain in _REMARK_COLUMNS)):
             return f"its {column} is {shortened(clean_text(text), 60)!r}"

@@ -37,7 +37,7 @@ def doubtful_series(named: Sequence[tuple[Feature, Meaning]], num_ponds: int) ->
     series: dict[str, dict[str, Feature]] = {}
     meaning_of: dict[str, Meaning] = {}
     for feature, meaning in named:
-        match = _NUMBERED.fullmatch(feature.name.strip())
+        match = next(filter(None, (form.fullmatch(feature.name.strip()) for form in _NUMBERED)), None)
         if match and series_of(feature.name) is None:
             word = match["word"].strip(_SIGNS)
             series.setdefault(word.casefold(), {})[match["number"]] = feature
@@ -50,7 +50,12 @@ def doubtful_series(named: Sequence[tuple[Feature, Meaning]], num_ponds: int) ->
 
 
 _SIGNS = " _-.#:"
-_NUMBERED = re.compile(r"(?P<word>\D*[^\W\d_]\D*?)[\s_.#:-]*(?P<number>\d+)\s*[a-zA-Z]?[号號番]?")
+_NUMBERED = (
+    re.compile(r"(?P<word>\D*[^\W\d_]\D*?)[\s_.#:-]*(?P<number>\d+)\s*[a-zA-Z]?[号號番]?"),
+    re.compile(r"(?P<word>\D*[^\W\d_]\D*?)[\s_.#:-]+(?P<number>[a-zA-Z])"),
+    re.compile(r"(?P<number>\d+)[\s_.#:-]*[号號番]?(?P<word>\D*[^\W\d_]\D*)"),
+)
+"""House 1, House A and 1 House, with the signs that people set between word and number."""
 
 
 def _is_doubtful(word: str, meaning: Meaning, members: Sequence[Feature], num_ponds: int) -> bool:
