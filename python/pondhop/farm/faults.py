@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from pondhop.errors import Fault
-from pondhop.farm.features import MAX_ALIKE, Feature, clean_text, listed, shortened
+from pondhop.farm.features import MAX_ALIKE, Feature, clean_text, listed, shortened, text_of
 
 MAX_FAULTS = 200
 """Faults that are listed one by one; more are counted."""
@@ -14,17 +14,17 @@ MAX_FAULTS = 200
 
 def told_faults(faults: Sequence[Fault], features: Sequence[Feature]) -> list[Fault]:
     """The faults for people to read: with names, those alike counted, and not too many."""
-    names = {feature.place: feature.name for feature in features}
+    named = {feature.place: feature for feature in features}
     kinds: dict[tuple[str, str], list[Fault]] = {}
     for fault in faults:
         kinds.setdefault(_kind(fault), []).append(fault)
     told: list[Fault] = []
     for alike in kinds.values():
         if len(alike) <= MAX_ALIKE:
-            told.extend(_named(fault, names) for fault in alike)
+            told.extend(_named(fault, named) for fault in alike)
         else:
-            first = _named(alike[0], names)
-            others = listed((_place_with_name(fault.path, names) for fault in alike[1:]), 3)
+            first = _named(alike[0], named)
+            others = listed((_place_with_name(fault.path, named) for fault in alike[1:]), 3)
             told.append(Fault(first.path, f"{first.message}; {len(alike) - 1} more alike: {others}", first.action))
     if len(told) <= MAX_FAULTS:
         return told
@@ -41,24 +41,34 @@ def _plain(text: str) -> str:
     return re.sub(r"'[^']*'|\"[^\"]*\"|[\w.\[\]]*\d[\w.\[\]]*", "#", text)
 
 
-def _name_of(path: str, names: dict[str, str]) -> str:
-    """The name of the feature in which a place lies, as ``features[3].geometry`` lies in ``features[3]``."""
-    if path in names:
-        return names[path]
+def _feature_at(path: str, features: Mapping[str, Feature]) -> Feature | None:
+    """The feature in which a place lies, as ``features[3].geometry`` lies in ``features[3]``."""
+    if path in features:
+        return features[path]
     for end in sorted((match.start() for match in re.finditer(r"[.,:]", path)), reverse=True):
-        if path[:end] in names:
-            return names[path[:end]]
-    return ""
+        if path[:end] in features:
+            return features[path[:end]]
+    return None
 
 
-def _named(fault: Fault, names: dict[str, str]) -> Fault:
-    name = _name_of(fault.path, names)
-    message = fault.message
-    if name and name not in message:
-        message = f"{shortened(name)!r}: {message}"
+def _called(feature: Feature | None) -> str:
+    """What a feature is called and its id, if they differ; empty if it has neither."""
+    if feature is None or not (feature.name or feature.id):
+        return ""
+    found = feature.find("id")
+    own_id = shortened(clean_text(text_of(found[1]))) if found and feature.name else ""
+    name = shortened(feature.name or feature.id)
+    return f"{name!r} (id {own_id})" if own_id not in {"", name} else repr(name)
+
+
+def _named(fault: Fault, features: Mapping[str, Feature]) -> Fault:
+    feature = _feature_at(fault.path, features)
+    message, called = fault.message, _called(feature)
+    if feature is not None and called and (feature.name or feature.id) not in message:
+        message = f"{called}: {message}"
     return Fault(clean_text(fault.path), clean_text(message), clean_text(fault.action))
 
 
-def _place_with_name(path: str, names: dict[str, str]) -> str:
-    name = _name_of(path, names)
-    return f"{path} {shortened(name)!r}" if name else path
+def _place_with_name(path: str, features: Mapping[str, Feature]) -> str:
+    called = _called(_feature_at(path, features))
+    return f"{path} {called}" if called else path

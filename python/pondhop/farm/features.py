@@ -103,6 +103,12 @@ class Feature:
         found = self.find(*NAME_COLUMNS) or (self.find(self.name_column) if self.name_column else None)
         return clean_text(text_of(found[1])) if found else ""
 
+    @property
+    def id(self) -> str:
+        """What tells it from others where it has no name, for messages; empty if nothing does."""
+        found = self.find("id", "pond_id")
+        return clean_text(text_of(found[1])) if found else self.own_id or ""
+
     def told(self) -> str:
         """Its name and its place, for messages."""
         return f"{shortened(self.name)!r} ({self.place})" if self.name else self.place

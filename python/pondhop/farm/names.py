@@ -18,7 +18,8 @@ from pondhop.farm.features import (
     shortened,
     text_of,
 )
-from pondhop.farm.kinds import KIND_COLUMNS, OSM_KEYS, POND_COLUMNS, ROLE_COLUMNS
+from pondhop.farm.hints import KIND_COLUMNS, POND_COLUMNS, ROLE_COLUMNS
+from pondhop.farm.map_tags import OSM_KEYS
 from pondhop.farm.ponds import Draft
 from pondhop.farm.shapes import places_together
 from pondhop.farm.vocabulary import column_words, english_words

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 
 from pondhop.farm.features import listed, shortened
 from pondhop.farm.model import Doubt
 from pondhop.farm.ponds import Draft
-from pondhop.farm.vocabulary import pond_like_words
-from pondhop.farm.words import Meaning, is_unnamed, meanings, name_stem, plain_words
+from pondhop.farm.words import Meaning, is_ordinary, meanings
 
 MIN_NUMBERED = 4
 """Ponds of one word and a number that make a pattern."""
@@ -37,7 +37,7 @@ def odd_names(drafts: Sequence[Draft], sure: set[str]) -> list[Doubt]:
     first_of = {id(draft.feature): draft for draft in reversed(drafts)}
     firsts = [first_of[key] for key in dict.fromkeys(id(draft.feature) for draft in drafts)]
     names = [draft.feature.name or draft.id for draft in firsts]
-    stems = [name_stem(name) for name in names]
+    stems = [_stem(name) for name in names]
     counts = Counter(stem for stem in stems if stem is not None)
     stem, num_numbered = counts.most_common(1)[0] if counts else (None, 0)
     is_worded = [Meaning.POND in meanings(name) for name in names]
@@ -54,7 +54,7 @@ def odd_names(drafts: Sequence[Draft], sure: set[str]) -> list[Doubt]:
         and draft.feature.place not in sure
         and (own is None or counts[own] < MIN_OTHER_SERIES)
         and draft.feature.name
-        and not _is_ordinary(name)
+        and not is_ordinary(name)
     ]
     if len(odd) > max(1, int(MAX_ODD_SHARE * sum(follows))):
         return []
@@ -70,9 +70,8 @@ def odd_names(drafts: Sequence[Draft], sure: set[str]) -> list[Doubt]:
     ]
 
 
-def _is_ordinary(name: str) -> bool:
-    """Whether a name is a code, or says what ponds are called by: a side, a size, a fish."""
-    if is_unnamed(name):
-        return True
-    words = plain_words(name)
-    return all((len(word) <= 2 and word.isascii()) or word in pond_like_words() for word in words)
+def _stem(name: str) -> str | None:
+    """What a name with a number has in common with others of its series; ``None`` without a number."""
+    plain = re.sub(r"[\W_]+", "", name.casefold())
+    stem, count = re.subn(r"(?:no|nr|num)?\d+[a-z]?(?![a-z])", "#", plain)
+    return re.sub(r"[号號番#]+$", "#", stem) if count else None

@@ -10,7 +10,7 @@ from pondhop.farm.columns import parted_pair
 from pondhop.farm.coordinates import MAX_LATITUDE_DEG, exchanged
 from pondhop.farm.degrees import number_given, plain_number
 from pondhop.farm.features import Feature, Source, left_out_note, listed, number_of, shortened
-from pondhop.farm.kinds import ROLE_COLUMNS
+from pondhop.farm.hints import ROLE_COLUMNS
 from pondhop.farm.neighbourhoods import MAX_GAP_M
 from pondhop.farm.roles import Sorted
 from pondhop.farm.words import Meaning, meanings

@@ -24,8 +24,7 @@ from pondhop.farm.names import adopt_names, name_ponds
 from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
-from pondhop.farm.roles import Sorted, no_pond_fault, sort_by_role
-from pondhop.farm.series import are_numbered_stations
+from pondhop.farm.roles import Sorted, are_numbered_stations, no_pond_fault, sort_by_role
 from pondhop.farm.words import pond_called
 from pondhop.places import Area, LonLat
 

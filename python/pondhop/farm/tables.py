@@ -17,8 +17,8 @@ from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, par
 from pondhop.farm.corners import pond_from_corners
 from pondhop.farm.degrees import Axis, angle_fault, hemisphere, metres, parse_degrees, parse_joined, side_of
 from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank, listed, normal_name, shortened
+from pondhop.farm.hints import POND_COLUMNS
 from pondhop.farm.joined_minutes import table_has_joined_minutes
-from pondhop.farm.kinds import POND_COLUMNS
 from pondhop.farm.letter_o import sign_of_o
 from pondhop.farm.parted_angles import join_parted_angles
 from pondhop.farm.projections import names_band, reproject, utm_crs

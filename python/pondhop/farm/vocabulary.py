@@ -47,13 +47,24 @@ def tags_of_anything_else() -> tuple[str, ...]:
 @cache
 def tag_meanings() -> dict[tuple[str, str], str]:
     """What tags of OpenStreetMap say, by key and value: the name of a meaning."""
-    groups = {name: tags for name, tags in _tables()["map_tags"].items() if name != "anything"}
-    return {
-        (key, value): meaning
-        for meaning, tags in groups.items()
-        for key, values in tags.items()
-        for value in _parted(values)
-    }
+    groups = {name: tags for name, tags in _tables()["map_tags"].items() if name not in {"anything", "perhaps_pond"}}
+    return {tag: meaning for meaning, tags in groups.items() for tag in _tags(tags)}
+
+
+@cache
+def perhaps_pond_tags() -> frozenset[tuple[str, str]]:
+    """Tags of OpenStreetMap of water that may be a pond, by key and value."""
+    return frozenset(_tags(_tables()["map_tags"]["perhaps_pond"]))
+
+
+def _tags(table: dict[str, str]) -> list[tuple[str, str]]:
+    return [(key, value) for key, values in table.items() for value in _parted(values)]
+
+
+@cache
+def kind_meanings() -> dict[str, str]:
+    """What values of a column of kinds say that say nothing, or less, in a name: the name of a meaning."""
+    return {value.casefold(): meaning for meaning, text in _tables()["kinds"].items() for value in _parted(text)}
 
 
 @cache
@@ -69,12 +80,12 @@ def remark_words(kind: str) -> tuple[str, ...]:
 
 
 @cache
-def roofed_words() -> tuple[str, ...]:
-    """Words for buildings that may hold tanks and raceways."""
-    return _parted(_tables()["roofed"]["words"])
-
-
-@cache
 def pond_like_words() -> frozenset[str]:
     """Words in names of ponds that are no words for ponds."""
     return frozenset(word.casefold() for word in _parted(_tables()["pond_like"]["words"]))
+
+
+@cache
+def series_words(kind: str) -> frozenset[str]:
+    """Words for buildings that may hold ponds, or codes that mean one thing only, however many are numbered."""
+    return frozenset(word.casefold() for word in _parted(_tables()["series"][kind]))

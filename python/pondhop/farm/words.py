@@ -13,7 +13,7 @@ import unicodedata
 from enum import Enum
 from functools import cache, lru_cache
 
-from pondhop.farm.vocabulary import english_words, meaning_words, pond_like_words, remark_words
+from pondhop.farm.vocabulary import english_words, kind_meanings, meaning_words, pond_like_words
 
 
 class Meaning(Enum):
@@ -40,7 +40,6 @@ class Meaning(Enum):
     """What a program calls things that nobody named."""
 
 
-_CLAUSE_ENDS = re.compile(r"[,;.!?/|()\[\]\n\uff0c\uff1b\u3002\u3001\uff01]|\s[-\u2013\u2014]\s")
 _LETTER_RUN = re.compile(r"[^\W\d_]+")
 _SPACED_SCRIPTS = ("LATIN", "GREEK", "CYRILLIC")
 
@@ -48,15 +47,21 @@ MIN_PLAIN_LETTERS = 5
 """Shorter words mean other things without their accents: hồ is a lake, ho is not."""
 
 
-def _is_spaced(letter: str) -> bool:
+def is_spaced(letter: str) -> bool:
+    """Whether a letter is of a script that sets words apart and writes no endings onto them."""
     return unicodedata.name(letter, "").startswith(_SPACED_SCRIPTS)
 
 
 def _stem(word: str) -> str:
     """A word without plural s, and without accents where it is long."""
     if len(word) >= MIN_PLAIN_LETTERS:
-        word = "".join(letter for letter in unicodedata.normalize("NFKD", word) if not unicodedata.combining(letter))
+        word = without_accents(word)
     return word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith("ss") else word
+
+
+def without_accents(text: str) -> str:
+    """A text in the plain letters of its script."""
+    return "".join(letter for letter in unicodedata.normalize("NFKD", text) if not unicodedata.combining(letter))
 
 
 def _split(text: str) -> list[str]:
@@ -65,16 +70,9 @@ def _split(text: str) -> list[str]:
     return _LETTER_RUN.findall(text.replace("'", "").replace("\N{RIGHT SINGLE QUOTATION MARK}", "").casefold())
 
 
-def _words(text: str) -> list[str]:
+def words_of(text: str) -> list[str]:
     """The words of a name in the form in which they are compared."""
     return list(map(_stem, _split(text)))
-
-
-def name_stem(name: str) -> str | None:
-    """What a name with a number has in common with others of its series; ``None`` without a number."""
-    plain = re.sub(r"[\W_]+", "", name.casefold())
-    stem, count = re.subn(r"(?:no|nr|num)?\d+[a-z]?(?![a-z])", "#", plain)
-    return re.sub(r"[号號番#]+$", "#", stem) if count else None
 
 
 def heading_words(text: str) -> list[str]:
@@ -98,8 +96,8 @@ def _phrases() -> tuple[dict[str, list[tuple[tuple[str, ...], Meaning]]], list[t
             letters = [letter for letter in phrase if letter.isalpha()]
             if not letters:
                 continue
-            if all(map(_is_spaced, letters)):
-                words = tuple(_words(phrase))
+            if all(map(is_spaced, letters)):
+                words = tuple(words_of(phrase))
                 spaced.setdefault(words[0], []).append((words, meaning))
             else:
                 joined.append((unicodedata.normalize("NFKC", phrase).casefold(), meaning))
@@ -109,7 +107,7 @@ def _phrases() -> tuple[dict[str, list[tuple[tuple[str, ...], Meaning]]], list[t
 
 
 @lru_cache(maxsize=65_536)
-def _told(text: str) -> tuple[tuple[tuple[str, frozenset[Meaning]], ...], tuple[str, ...]]:
+def phrases_of(text: str) -> tuple[tuple[tuple[str, frozenset[Meaning]], ...], tuple[str, ...]]:
     """The phrases of a name with all that each of them says, and the words that say nothing."""
     spaced, joined = _phrases()
     found: list[tuple[str, frozenset[Meaning]]] = []
@@ -120,7 +118,7 @@ def _told(text: str) -> tuple[tuple[tuple[str, frozenset[Meaning]], ...], tuple[
                 sign = phrase.removeprefix("=")
                 found.append((sign, frozenset(other for same, other in joined if same == phrase)))
                 plain = plain.replace(sign, " ")
-        foreign = [run for run in _LETTER_RUN.findall(plain) if not all(map(_is_spaced, run))]
+        foreign = [run for run in _LETTER_RUN.findall(plain) if not all(map(is_spaced, run))]
     else:
         foreign = []
     written = _split(text)
@@ -130,7 +128,7 @@ def _told(text: str) -> tuple[tuple[tuple[str, frozenset[Meaning]], ...], tuple[
     while at < len(words):
         matches = [item for item in spaced.get(words[at], ()) if tuple(words[at : at + len(item[0])]) == item[0]]
         if not matches:
-            if all(map(_is_spaced, written[at])):
+            if all(map(is_spaced, written[at])):
                 rest.append(written[at])
             at += 1
             continue
@@ -144,7 +142,7 @@ def _told(text: str) -> tuple[tuple[tuple[str, frozenset[Meaning]], ...], tuple[
 @lru_cache(maxsize=65_536)
 def meanings(text: str) -> frozenset[Meaning]:
     """Everything that the words of a name say; empty for a name that says nothing."""
-    return frozenset(meaning for _, said in _told(text)[0] for meaning in said)
+    return frozenset(meaning for _, said in phrases_of(text)[0] for meaning in said)
 
 
 def pond_called(pond_id: str) -> str:
@@ -154,7 +152,7 @@ def pond_called(pond_id: str) -> str:
 
 def word_for(text: str, meaning: Meaning) -> str:
     """The word of a name that has a meaning, as it is written there; the whole name if no single word has it."""
-    return next((word for word, said in _told(text)[0] if meaning in said), text)
+    return next((word for word, said in phrases_of(text)[0] if meaning in said), text)
 
 
 _THINGS = {Meaning.POND, Meaning.OTHER, Meaning.DEPOT, Meaning.START, Meaning.STATION, Meaning.FENCE, Meaning.BOUNDARY}
@@ -166,11 +164,11 @@ def thing_named_for_pond(text: str) -> str | None:
     ``None`` for ponds, such as a "road pond" or a "pond by the road", and for names in other languages, in many of
     which the first word says what a thing is.
     """
-    if not any(_is_english_pond(phrase) for phrase, _ in _told(text)[0]):
+    if not any(_is_english_pond(phrase) for phrase, _ in phrases_of(text)[0]):
         return None
     written = _split(text)
     end = next((at for at, word in enumerate(written) if at and word in english_words("before_places")), len(written))
-    things = [(phrase, said) for phrase, said in _told(" ".join(written[:end]))[0] if _THINGS & said]
+    things = [(phrase, said) for phrase, said in phrases_of(" ".join(written[:end]))[0] if _THINGS & said]
     if not things or written[end - 1] in pond_like_words():
         return None
     phrase, said = things[-1]
@@ -186,79 +184,10 @@ def series_of(text: str) -> tuple[str, tuple[str, ...]] | None:
 
     ``None`` for a name with any other word that says what a thing is: a "weather station" is no place in the water.
     """
-    found, rest = _told(text)
+    found, rest = phrases_of(text)
     words = [word for word, said in found if Meaning.SERIES in said]
     is_all = all({Meaning.SERIES, Meaning.SAMPLING} & said for _, said in found)
     return (_stem(words[0]), rest) if words and is_all else None
-
-
-@lru_cache(maxsize=65_536)
-def keeps_drones_out(remark: str) -> bool:
-    """Whether a clause of a remark says of the thing itself that nobody flies there.
-
-    "No-fly zone, military" does; "no-fly zone to the north" is said of another place.
-    """
-    return any(map(_is_no_fly_clause, _CLAUSE_ENDS.split(remark)))
-
-
-def _is_no_fly_clause(clause: str) -> bool:
-    words = _words(clause)
-    plain = unicodedata.normalize("NFKC", clause).casefold().strip()
-    found, rest = _told(clause)
-    if found and not rest and all(said == {Meaning.NO_FLY} for _, said in found):
-        return True
-    phrases, elsewhere = _remark_phrases()
-    for phrase in phrases:
-        if not isinstance(phrase, str):
-            ends = range(len(phrase), len(words) + 1)
-            at = next((end - len(phrase) for end in ends if tuple(words[end - len(phrase) : end]) == phrase), None)
-            if at is not None:
-                return not elsewhere.intersection([*words[:at], *words[at + len(phrase) :]])
-        elif phrase in plain:
-            rest_of_it = plain.replace(phrase, " ")
-            return not any(word in rest_of_it for word in elsewhere if not all(map(_is_spaced, word)))
-    return False
-
-
-@lru_cache(maxsize=65_536)
-def is_out_of_use(remark: str) -> bool:
-    """Whether a clause of a remark says that there is nothing to measure: ``drained``, ``dry since May``."""
-    return any(map(_is_unused_clause, _CLAUSE_ENDS.split(remark)))
-
-
-def _is_unused_clause(clause: str) -> bool:
-    words = tuple(_words(clause))
-    plain = re.sub(r"[\W\d_]+", "", unicodedata.normalize("NFKC", clause).casefold())
-    phrases, times = _unused_phrases()
-    for phrase in phrases:
-        if isinstance(phrase, str):
-            if plain == re.sub(r"[\W\d_]+", "", phrase):
-                return True
-        elif words[: len(phrase)] == phrase and (len(words) == len(phrase) or words[len(phrase)] in times):
-            return True
-    return False
-
-
-def _compared(phrase: str) -> tuple[str, ...] | str:
-    """A phrase of remarks as words, or as a run of signs where its script does not set words apart."""
-    is_spaced = all(_is_spaced(letter) for letter in phrase if letter.isalpha())
-    return tuple(_words(phrase)) if is_spaced else unicodedata.normalize("NFKC", phrase).casefold()
-
-
-@cache
-def _unused_phrases() -> tuple[list[tuple[str, ...] | str], frozenset[str]]:
-    """Phrases that say that a pond is out of use, the longest first; and the words before times."""
-    times = frozenset(word for phrase in remark_words("times") for word in _words(phrase))
-    return sorted(map(_compared, remark_words("unused")), key=len, reverse=True), times
-
-
-@cache
-def _remark_phrases() -> tuple[list[tuple[str, ...] | str], frozenset[str]]:
-    """Phrases that keep drones out, as words or as runs of signs, the longest first; and words for other places."""
-    elsewhere = frozenset(
-        word if isinstance(word, str) else word[0] for word in map(_compared, remark_words("elsewhere"))
-    )
-    return sorted(map(_compared, remark_words("no_fly")), key=len, reverse=True), elsewhere
 
 
 def _stands_in(phrase: str, meaning: Meaning, text: str) -> bool:
@@ -276,17 +205,33 @@ def _stands_in(phrase: str, meaning: Meaning, text: str) -> bool:
 
 def is_unnamed(text: str) -> bool:
     """Whether a name is what a program calls things that nobody named, with or without a number."""
-    rest = [word for word in _words(text) if Meaning.UNNAMED not in meanings(word)]
-    has_foreign = any(letter.isalpha() and not _is_spaced(letter) for letter in text)
+    rest = [word for word in words_of(text) if Meaning.UNNAMED not in meanings(word)]
+    has_foreign = any(letter.isalpha() and not is_spaced(letter) for letter in text)
     return Meaning.UNNAMED in meanings(text) and (not rest or has_foreign or _is_phrase(text, Meaning.UNNAMED))
 
 
 def _is_phrase(text: str, meaning: Meaning) -> bool:
     """Whether a name is exactly one phrase of the list."""
-    words = tuple(_words(text))
+    words = tuple(words_of(text))
     return bool(words) and (words, meaning) in _phrases()[0].get(words[0], ())
 
 
 def is_plain_word(text: str) -> bool:
     """Whether a name is a word for ponds alone, which tells no pond from another."""
     return _is_phrase(text, Meaning.POND) and not any(letter.isdigit() for letter in text)
+
+
+def is_ordinary(text: str) -> bool:
+    """Whether a text is a code, or says what ponds are called by: a side, a size, a fish."""
+    if is_unnamed(text):
+        return True
+    words = plain_words(text)
+    return all((len(word) <= 2 and word.isascii()) or word in pond_like_words() for word in words)
+
+
+def says_only(text: str) -> bool:
+    """Whether all words of a text say what a thing is, and no number tells it from others of its kind."""
+    found, rest = phrases_of(text)
+    is_numbered = any(letter.isdigit() for letter in text)
+    is_kind = bool(found) or text.strip().casefold() in kind_meanings()
+    return is_kind and not is_numbered and all(word in pond_like_words() for word in rest)
