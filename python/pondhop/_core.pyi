@@ -247,3 +247,49 @@ def territory(
     iterations: int | None = None,
     progress: Callable[[float, int, float], object] | None = None,
 ) -> tuple[list[list[int]], float, bool]: ...
+
+@final
+class Round:
+    def __new__(
+        cls,
+        depot: ArrayLike,
+        visits: ArrayLike,
+        num_drones: SupportsIndex,
+        *,
+        service_durations: ArrayLike | None = None,
+        loads: ArrayLike | None = None,
+        releases: ArrayLike | None = None,
+        windows: Sequence[Sequence[tuple[float, float]]] | None = None,
+        capacity: float = ...,
+        max_trip_duration: float = ...,
+        shift: tuple[float, float] = ...,
+        turnaround: float | None = None,
+        rounding: Literal["exact", "dimacs"] = "exact",
+    ) -> Self: ...
+    @property
+    def num_visits(self) -> int: ...
+
+@final
+class RoundPlan:
+    @property
+    def routes(self) -> list[list[list[int]]]: ...
+    @property
+    def trip_times(self) -> list[list[tuple[float, float]]]: ...
+    @property
+    def total_length(self) -> float: ...
+    @property
+    def makespan(self) -> float: ...
+    @property
+    def is_feasible(self) -> bool: ...
+    @property
+    def violations(self) -> list[str]: ...
+
+def search_round(
+    problem: Round,
+    *,
+    seed: int = 1,
+    time_limit_s: float | None = None,
+    iterations: int | None = None,
+    progress: Callable[[float, int, float], object] | None = None,
+) -> tuple[list[list[list[int]]], float, int, bool]: ...
+def evaluate_round(problem: Round, routes: Sequence[Sequence[Sequence[int]]]) -> RoundPlan: ...

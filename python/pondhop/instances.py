@@ -124,7 +124,7 @@ def read_farms(path: str | Path) -> list[ResearchFarm]:
     InvalidInput
         With every fault of the file, each with its place (``[3].ponds[17]``).
     """
-    text = _read_text(checked_path("path", path))
+    text = read_text(checked_path("path", path))
     try:
         farms = json.loads(text)
     except json.JSONDecodeError as error:
@@ -198,7 +198,7 @@ def read_tsplib(path: str | Path) -> ResearchFarm:
     ----------
     Reinelt. TSPLIB 95, sections 1 and 2.
     """
-    header, nodes, faults = _parse_tsplib(_read_text(checked_path("path", path)))
+    header, nodes, faults = _parse_tsplib(read_text(checked_path("path", path)))
     place, kind = header.get("TYPE", (str(path), "missing"))
     if kind != "TSP":
         faults.append(Fault(place, f"TYPE is {kind}", "give a file of TYPE: TSP"))
@@ -223,7 +223,14 @@ def read_tsplib(path: str | Path) -> ResearchFarm:
     return ResearchFarm(positions[0], positions[1:])
 
 
-def _read_text(path: Path) -> str:
+def read_text(path: Path) -> str:
+    """Return what a text file holds.
+
+    Raises
+    ------
+    InvalidInput
+        If it cannot be read, or is no text.
+    """
     try:
         return path.read_text(encoding="utf-8")
     except OSError as error:

@@ -15,13 +15,14 @@
 //! 11. [`plan`]: the immutable result: routes, schedule, violations.
 //! 12. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
 //! 13. [`separation`]: how well a plan keeps the drones apart.
-//! 14. [`bound`]: lower bounds: what no plan can beat.
-//! 15. [`kmeans`]: clusters of nearby points.
-//! 16. [`sweep`]: back-and-forth coverage of a convex polygon.
-//! 17. [`hpp`]: the paper's planner.
-//! 18. [`search`]: the min-max optimiser.
-//! 19. [`territory`]: balanced routes in territories that do not overlap.
-//! 20. [`attention`]: the attention model, a trained network that builds routes.
+//! 14. [`rounds`]: rounds of several trips with windows, their plans and their judge.
+//! 15. [`bound`]: lower bounds: what no plan can beat.
+//! 16. [`kmeans`]: clusters of nearby points.
+//! 17. [`sweep`]: back-and-forth coverage of a convex polygon.
+//! 18. [`hpp`]: the paper's planner.
+//! 19. [`search`]: the min-max optimiser.
+//! 20. [`territory`]: balanced routes in territories that do not overlap.
+//! 21. [`attention`]: the attention model, a trained network that builds routes.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -40,6 +41,7 @@ pub mod neighbours;
 pub mod plan;
 pub mod problem;
 pub mod random;
+pub mod rounds;
 pub mod search;
 pub mod separation;
 pub mod sweep;

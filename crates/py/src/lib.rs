@@ -14,6 +14,7 @@ mod generate;
 mod hpp;
 mod plan;
 mod problem;
+mod rounds;
 mod search;
 mod separation;
 mod territory;
@@ -41,6 +42,8 @@ mod _core {
     use crate::plan::{Plan, Violation};
     #[pymodule_export]
     use crate::problem::{Energy, Problem};
+    #[pymodule_export]
+    use crate::rounds::{Round, RoundPlan, evaluate_round, search_round};
     #[pymodule_export]
     use crate::search::search;
     #[pymodule_export]

@@ -29,17 +29,33 @@ from pondhop.units import counted
 if TYPE_CHECKING:
     from pondhop.files.routes_json import Judgement
     from pondhop.instances import ResearchFarm
+    from pondhop.rounds import Rounding
+
+MIN_ROUND_STEPS = 100_000
+"""Steps that a round is planned for where neither steps nor seconds are said."""
+
+ROUND_STEPS_PER_VISIT = 1_000
 
 FarmsOption = Annotated[Path | None, typer.Option(help="The research farms that the plans are for.")]
 
 
 @with_planning_options
 def solve(
-    farms: Annotated[Path, typer.Argument(exists=True, help="Research farms as JSON, or a TSPLIB .tsp file.")],
-    routes: Annotated[int, typer.Option(min=1, help="At most this many routes a farm.")],
+    farms: Annotated[
+        Path,
+        typer.Argument(
+            exists=True, help="Research farms as JSON, a TSPLIB .tsp file, or a round: Solomon's .txt, VRPLIB's .vrp."
+        ),
+    ],
+    routes: Annotated[
+        int | None, typer.Option(min=1, help="At most this many routes a farm; in a round as many as the file says.")
+    ] = None,
     start: Annotated[
         Path | None, typer.Option(exists=True, help="Plans of 'pondhop solve' that the search begins with.")
     ] = None,
+    rounding: Annotated[
+        Literal["exact", "dimacs"], typer.Option(help="Of a round: legs as they are, or cut to their first decimal.")
+    ] = "exact",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="File for the plans; else stdout.")] = None,
     require_feasible: RequireFeasible = False,
     as_json: Json = False,
@@ -50,6 +66,7 @@ def solve(
     - `pondhop solve farms.json --routes 5 -o plans.json`
     - `pondhop solve farms.json --routes 5 --time-limit 0.1 --slack 1 -o plans.json`
     - `pondhop solve kroa200.tsp --routes 3 --planner hpp --seed 7`
+    - `pondhop solve C101.txt --objective total --rounding dimacs --time-limit 5 -o plans.json`
 
     Ctrl-C ends the search of a farm with the best plan so far, and writes the plans of the farms until then.
 
@@ -62,7 +79,18 @@ def solve(
     - `lower_bound`: no plan has a shorter longest route
 
     Every pond is in exactly one route, and there are at most `--routes` of them.
+
+    Of a round (time windows, loads, releases, trips) the total length is minimised. Customers count from 0 in the
+    order of the file; where it has trips, a route is a list of them. Its object has `index`, `planner`, `seed`,
+    `elapsed_s`, `routes`, `total_length`, `is_feasible` and `violations`.
     """
+    from pondhop.rounds import is_round_file
+
+    if is_round_file(farms):
+        _solve_round(farms, routes, rounding, start, output, require_feasible, as_json, **options)
+        return
+    if routes is None:
+        raise InvalidInput([Fault("--routes", "the number of routes is missing", "say how many, as in --routes 5")])
     from pondhop import planners
     from pondhop.cli.printed import SolvedFarms
     from pondhop.files.routes_json import PlansWriter, read_routes
@@ -103,6 +131,85 @@ def solve(
         exit_stopped(f"stopped; {writer.num_plans} of {len(read)} farms are planned")
     if require_feasible and totals.num_infeasible:
         raise typer.Exit(EXIT_INFEASIBLE)
+
+
+def _solve_round(
+    path: Path,
+    routes: int | None,
+    rounding: Rounding,
+    start: Path | None,
+    output: Path | None,
+    require_feasible: bool,
+    as_json: bool,
+    **options: Unpack[PlainOptions],
+) -> None:
+    """Plan the round of a file, and write what `solve` says of one."""
+    from pondhop import _core
+    from pondhop.documents.atomic import write_all
+    from pondhop.rounds import read_round
+
+    _check_round_options(start, **options)
+    read = read_round(path, rounding=rounding, num_drones=routes)
+    seconds, steps = options.get("time_limit_s"), options.get("iterations")
+    if seconds is None and steps is None:
+        steps = max(MIN_ROUND_STEPS, ROUND_STEPS_PER_VISIT * read.round.num_visits)
+    with progress("Planning", total=1) as advance:
+        trips, elapsed_s, _, is_stopped = _core.search_round(
+            read.round,
+            seed=options.get("seed", 1),
+            time_limit_s=seconds,
+            iterations=steps,
+            progress=search_progress(advance),
+        )
+    plan = _core.evaluate_round(read.round, trips)
+    record = {
+        "index": 0,
+        "planner": "search",
+        "seed": options.get("seed", 1),
+        "elapsed_s": elapsed_s,
+        "routes": plan.routes if read.has_trips else [trip for route in plan.routes for trip in route],
+        "total_length": plan.total_length,
+        "is_feasible": plan.is_feasible,
+        "violations": plan.violations,
+    }
+    text = f"[\n{json.dumps(record)}\n]\n"
+    if output is not None:
+        write_all({output: text})
+    if output is None or as_json:
+        typer.echo(text, nl=False)
+    else:
+        num_trips = sum(map(len, plan.routes))
+        told = "feasible" if plan.is_feasible else f"not feasible: {counted(len(plan.violations), 'violation')}"
+        typer.echo(f"{counted(num_trips, 'trip')}, {plan.total_length:.1f} long in all, {told}")
+    if is_stopped:
+        exit_stopped("stopped; the best plan so far is written")
+    if require_feasible and not plan.is_feasible:
+        raise typer.Exit(EXIT_INFEASIBLE)
+
+
+def _check_round_options(start: Path | None, **options: Unpack[PlainOptions]) -> None:
+    """Refuse, all at once, what a search for a round does not know.
+
+    Raises
+    ------
+    InvalidInput
+        With every option that would be without effect.
+    """
+    faults = []
+    if options.get("objective", "max") != "total":
+        message = "the longest route of a round cannot be minimised yet"
+        faults.append(Fault("--objective", message, "pass --objective total"))
+    for name, is_given in (
+        ("--start", start is not None),
+        ("--slack", options.get("slack_percent", 0.0) != 0.0),
+        ("--separate-airspace", options.get("has_separate_airspace", False)),
+        ("--threads", options.get("threads", 1) != 1),
+        ("--planner", options.get("planner", "auto") not in {"auto", "search"}),
+    ):
+        if is_given:
+            faults.append(Fault(name, "a round is planned without it", "leave it out"))
+    if faults:
+        raise InvalidInput(faults)
 
 
 def evaluate(

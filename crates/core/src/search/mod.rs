@@ -7,17 +7,20 @@
 //!
 //! 1. `options`: what to search for, how long, and what a search found.
 //! 2. `objective`: what is minimised, and by what plans are compared.
-//! 3. `plain`: the engine for what is one number a route, the same both ways: all that is planned today.
+//! 3. `plain`: the engine for what is one number a route, the same both ways: all that farms are planned with today.
+//! 4. `timed`: the engine for trips with windows, loads and releases.
 //!
 //! `docs/explanation/search.md` says what was tried and what it gave.
 
 mod objective;
 mod options;
 mod plain;
+mod timed;
 
 use crate::problem::Problem;
+use crate::rounds::Round;
 pub(crate) use objective::{Objective, Rank};
-pub use options::{Goal, Options, Outcome};
+pub use options::{Goal, Options, Outcome, RoundOutcome};
 pub(crate) use plain::{
     Airspace, Chain, Network, Schedule, State, curve_keys, improve_routes, open_at_best_leg, place_after_widest_gap,
     pseudo_angle, smooth_routes, to_indices,
@@ -30,4 +33,11 @@ pub(crate) use plain::{
 #[must_use]
 pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     plain::solve(problem, options)
+}
+
+/// Plans trips for `round` so that their total length is small. One thread; goal, slack and start of the options are without
+/// effect.
+#[must_use]
+pub fn solve_round(round: &Round, options: &Options<'_>) -> RoundOutcome {
+    timed::solve(round, options)
 }

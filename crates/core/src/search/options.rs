@@ -57,3 +57,12 @@ pub struct Outcome {
     /// Steps made by the first thread.
     pub num_iterations: u64,
 }
+
+/// What a search found for a round.
+#[derive(Clone, Debug)]
+pub struct RoundOutcome {
+    /// For each drone that flies its trips, each the visits in flying order; no visit twice. What no trip could make is left out.
+    pub routes: Vec<Vec<Vec<usize>>>,
+    /// Steps made.
+    pub num_iterations: u64,
+}
