@@ -26,6 +26,8 @@ def declared_modules(path: Path) -> list[str]:
 READING_ORDER = listed_modules(CORE / "lib.rs")
 SEARCH = CORE / "search"
 PLAIN = SEARCH / "plain"
+TIMED = SEARCH / "timed"
+ROUNDS = CORE / "rounds"
 
 
 def sources_of(module: str) -> list[Path]:
@@ -57,17 +59,20 @@ def test_every_core_module_has_a_place_in_the_reading_order() -> None:
     assert sorted(READING_ORDER) == sorted(declared_modules(CORE / "lib.rs"))
 
 
-@pytest.mark.parametrize("folder", [SEARCH, PLAIN], ids=lambda folder: folder.name)
+@pytest.mark.parametrize("folder", [SEARCH, PLAIN, TIMED, ROUNDS], ids=lambda folder: folder.name)
 def test_every_module_of_the_search_has_a_place_in_the_reading_order(folder: Path) -> None:
     assert sorted(listed_modules(folder / "mod.rs")) == sorted(declared_modules(folder / "mod.rs"))
 
 
-@pytest.mark.parametrize("module", listed_modules(PLAIN / "mod.rs"))
-def test_modules_of_the_plain_engine_use_only_those_before_them(module: str) -> None:
-    order = listed_modules(PLAIN / "mod.rs")
-    source = (PLAIN / f"{module}.rs").read_text()
+@pytest.mark.parametrize(
+    ("folder", "module"),
+    [(folder, module) for folder in (PLAIN, TIMED) for module in listed_modules(folder / "mod.rs")],
+)
+def test_modules_of_an_engine_use_only_those_before_them(folder: Path, module: str) -> None:
+    order = listed_modules(folder / "mod.rs")
+    source = (folder / f"{module}.rs").read_text()
     upward = used_modules(source, "super") - set(order[: order.index(module)])
-    assert not upward, f"{module}.rs uses {sorted(upward)}, which come after it in search/plain/mod.rs"
+    assert not upward, f"{module}.rs uses {sorted(upward)}, which come after it in {folder.name}/mod.rs"
     shared = used_modules(source, "crate::search")
     assert shared <= {"options", "objective"}, f"{module}.rs goes through the door of the search: {sorted(shared)}"
 

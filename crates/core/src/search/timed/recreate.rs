@@ -13,7 +13,7 @@ use crate::random::Random;
 const PLACE_BLINK: u64 = u64::MAX / 100;
 /// Trips of which both ends are tried, besides those that are near; a random run of them.
 const MAX_ENDS: usize = 12;
-/// Visits of the bank that are tried in one step besides those just taken out.
+/// Visits of the bank that are tried in one step besides those just taken out; a random run of them.
 const MAX_BANK: usize = 20;
 
 /// By what the bank is ordered, with how often.
@@ -58,15 +58,16 @@ pub(super) struct Recreate {
 }
 
 impl Recreate {
-    /// Puts back what has a place; the rest stays in the bank.
+    /// Puts back the last `num_new` visits of the bank, and some of the others, where they have a place; the rest stays there.
     pub fn insert(
         &mut self,
         network: &Network<'_>,
         state: &mut State,
+        num_new: usize,
         random: &mut Random,
         touched: &mut Touched,
     ) -> Result<(), OutOfTime> {
-        self.order(network, state, random);
+        self.order(network, state, num_new, random);
         for index in 0..self.queue.len() {
             let visit = self.queue[index].1;
             let mut best = Cheapest { network, state, visit, salt: random.bits(), price: f64::INFINITY, target: None };
@@ -82,7 +83,7 @@ impl Recreate {
         Ok(())
     }
 
-    fn order(&mut self, network: &Network<'_>, state: &State, random: &mut Random) {
+    fn order(&mut self, network: &Network<'_>, state: &State, num_new: usize, random: &mut Random) {
         let mut draw = random.below(ORDERS.iter().map(|&(_, weight)| weight).sum());
         let mut order = Order::Random;
         for (other, weight) in ORDERS {
@@ -92,10 +93,11 @@ impl Recreate {
             }
             draw -= weight;
         }
-        // The bank's oldest visits were refused most often; of many only the latest are tried.
-        let first = state.bank.len().saturating_sub(MAX_BANK + 40);
+        let (old, new) = state.bank.split_at(state.bank.len() - num_new);
+        let first = if old.len() > MAX_BANK { random.below(old.len() - MAX_BANK + 1) } else { 0 };
+        let tried = old[first..].iter().take(MAX_BANK).chain(new);
         self.queue.clear();
-        for &visit in &state.bank[first..] {
+        for &visit in tried {
             let windows = network.windows(visit);
             let depot = network.depot();
             let key = match order {

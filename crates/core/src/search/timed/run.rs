@@ -52,12 +52,10 @@ impl<'a> Search<'a> {
         let mut touched = Touched::default();
         let mut state = State::new(network);
         let furthest = (0..network.depot()).map(|visit| network.leg(network.depot(), visit)).fold(0.0, f64::max);
-        // One visit a time, so that a plan is complete but for what has no place.
-        let mut num_left = usize::MAX;
-        while state.bank.len() < num_left {
-            num_left = state.bank.len();
-            // A priced place that is late by rounding leaves its visit where it was priced, which is in time but for that.
-            let _ = recreate.insert(network, &mut state, &mut random, &mut touched);
+        // Of a place that is late by rounding after all, the first plan knows nothing; the steps find others.
+        let mut first = state.clone();
+        if recreate.insert(network, &mut first, network.num_visits, &mut random, &mut touched).is_ok() {
+            state = first;
         }
         let absent_cost = ABSENT_COST * (2.0 * furthest).max(f64::MIN_POSITIVE);
         let mut search = Self {
@@ -102,9 +100,12 @@ impl<'a> Search<'a> {
     fn step(&mut self, temperature: f64) {
         // 1 - u is never 0, so the logarithm is finite.
         let threshold = self.current_value - temperature * libm::log(1.0 - self.random.uniform());
+        let num_old = self.trial.bank.len();
         let ruined = self.ruin.remove(self.network, &mut self.trial, &mut self.random, &mut self.touched);
-        let made = ruined
-            .and_then(|()| self.recreate.insert(self.network, &mut self.trial, &mut self.random, &mut self.touched));
+        let num_new = self.trial.bank.len() - num_old;
+        let made = ruined.and_then(|()| {
+            self.recreate.insert(self.network, &mut self.trial, num_new, &mut self.random, &mut self.touched)
+        });
         let value = if made.is_ok() { self.value() } else { f64::INFINITY };
         if value < threshold {
             self.accept(value);
@@ -117,14 +118,7 @@ impl<'a> Search<'a> {
     fn accept(&mut self, value: f64) {
         self.current.copy_touched(&self.trial, &self.touched);
         self.current_value = value;
-        for (&trip, &route) in self.touched.trips.iter().zip(self.touched.routes.iter().cycle()) {
-            self.since_best.add(trip, route);
-        }
-        for &route in &self.touched.routes {
-            if !self.since_best.routes.contains(&route) {
-                self.since_best.routes.push(route);
-            }
-        }
+        self.since_best.extend(&self.touched);
         if value < self.best_value {
             self.best_value = value;
             self.best.copy_touched(&self.current, &self.since_best);

@@ -61,6 +61,17 @@ impl Touched {
         }
     }
 
+    /// What either of both names.
+    pub fn extend(&mut self, other: &Self) {
+        for (own, others) in [(&mut self.trips, &other.trips), (&mut self.routes, &other.routes)] {
+            for &index in others {
+                if !own.contains(&index) {
+                    own.push(index);
+                }
+            }
+        }
+    }
+
     pub fn clear(&mut self) {
         self.trips.clear();
         self.routes.clear();
