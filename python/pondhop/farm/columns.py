@@ -196,11 +196,21 @@ def find_columns(header: Sequence[str], rows: Sequence[Sequence[str]], place: st
         return Columns(names, (), wkt)
     sides, open_sides = _sides(plain, rows, found)
     for index in sorted(open_sides):
-        letters = next(row[index].strip() for row in rows if index < len(row) and row[index].strip())
+        letters = _filled(rows, index)[0]
         message = f"does column {names[index]!r} tell the hemisphere? It holds {letters!r}"
         action = "call the column hemisphere if it does; if not, leave it out or write words"
         source.faults.append(Fault(place, message, action))
     return None if open_sides else _with_corners(names, found, sides, signs, place, source)
+
+
+def cell_of(row: Sequence[str], index: int | None) -> str:
+    """A cell of a line without the blanks around it; empty where there is no such column, or the line is too short."""
+    return "" if index is None or index >= len(row) else row[index].strip()
+
+
+def _filled(rows: Sequence[Sequence[str]], index: int) -> list[str]:
+    """The cells of a column that are not blank, without the blanks around them."""
+    return [cell for row in rows if (cell := cell_of(row, index))]
 
 
 def _metre_columns(
@@ -223,10 +233,10 @@ def _metre_columns(
 
 def _zone_band(plain: Sequence[str], rows: Sequence[Sequence[str]], zone: int) -> int | None:
     """The column with the letter of the band, beside zones that are numbers."""
-    if any(not row[zone].strip().isdecimal() for row in rows if zone < len(row) and row[zone].strip()):
+    if not all(map(str.isdecimal, _filled(rows, zone))):
         return None
     for index, name in enumerate(plain):
-        cells = [row[index].strip() for row in rows if index < len(row) and row[index].strip()]
+        cells = _filled(rows, index)
         if re.fullmatch(_BAND, name) and cells and all(re.fullmatch("[C-HJ-NP-Xc-hj-np-x]", cell) for cell in cells):
             return index
     return None
@@ -235,7 +245,7 @@ def _zone_band(plain: Sequence[str], rows: Sequence[Sequence[str]], zone: int) -
 def _zone_side(plain: Sequence[str], rows: Sequence[Sequence[str]], zone: int) -> int | None:
     """The column that holds north or south for a zone of UTM: called so, or right beside it."""
     for index, name in enumerate(plain):
-        cells = [row[index].strip() for row in rows if index < len(row) and row[index].strip()]
+        cells = _filled(rows, index)
         is_named = name in _SIDE_NAMES or re.fullmatch(_LAT_SIDE, name) or index == zone + 1
         if is_named and cells and all((hemisphere(cell) or ("", 0))[0] == "lat" for cell in cells):
             return index
@@ -245,7 +255,7 @@ def _zone_side(plain: Sequence[str], rows: Sequence[Sequence[str]], zone: int) -
 def _pair_column(plain: Sequence[str], rows: Sequence[Sequence[str]]) -> int | None:
     """The column of coordinates, latitude first, whose name says so and whose cells all hold two numbers."""
     for index, name in enumerate(plain):
-        cells = [row[index] for row in rows if index < len(row) and row[index].strip()]
+        cells = _filled(rows, index)
         is_named = re.fullmatch(_PAIR, name) is not None
         if is_named and cells and all(len(parted_pair(cell)) == 2 for cell in cells):
             return index
@@ -283,7 +293,7 @@ def _sides(
         if coordinate is None:
             continue
         for index, name in enumerate(plain):
-            cells = {row[index].strip() for row in rows if index < len(row) and row[index].strip()}
+            cells = set(_filled(rows, index))
             if index in coordinates or not cells or any(side_of(cell, axis) is None for cell in cells):
                 continue
             is_letters = all(hemisphere(cell) or names_both_sides(cell) for cell in cells)

@@ -205,7 +205,6 @@ def present_columns(keys: tuple[str, ...], names: tuple[str, ...]) -> tuple[str,
 
 
 @lru_cache(maxsize=4096)
-@lru_cache(maxsize=4096)
 def normal_name(name: str) -> str:
     """A property name without case, blanks and punctuation."""
     return re.sub(r"[\W_]+", "", name).lower()

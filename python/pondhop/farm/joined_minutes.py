@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pondhop.farm.columns import Columns, parted_pair
+from pondhop.farm.columns import Columns, cell_of, parted_pair
 from pondhop.farm.degrees import Axis, joined_number, parted_degrees, side_of, side_written
 from pondhop.farm.features import Notes
 from pondhop.places import LonLat
@@ -65,16 +65,12 @@ def joined_text(number: float) -> str:
 def _places(row: Sequence[str], columns: Columns) -> list[dict[Axis, str]]:
     """The cells of a line that hold longitude and latitude, a pair for each place."""
     if columns.pair is not None:
-        parts = parted_pair(_cell(row, columns.pair))
+        parts = parted_pair(cell_of(row, columns.pair))
         return [{"lat": parts[0], "lon": parts[1]}] if len(parts) == 2 else []
-    return [{"lon": _cell(row, lon), "lat": _cell(row, lat)} for lon, lat in columns.corners]
+    return [{"lon": cell_of(row, lon), "lat": cell_of(row, lat)} for lon, lat in columns.corners]
 
 
 def _has_letter(cell: str, axis: Axis, row: Sequence[str], columns: Columns) -> bool:
     """Whether a letter of a hemisphere stands in a cell, beside it or in its heading."""
-    beside = _cell(row, columns.sides.get(axis))
+    beside = cell_of(row, columns.sides.get(axis))
     return side_written(cell) is not None or side_of(beside, axis) is not None or axis in columns.signs
-
-
-def _cell(row: Sequence[str], index: int | None) -> str:
-    return "" if index is None or index >= len(row) else row[index]

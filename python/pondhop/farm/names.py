@@ -50,7 +50,7 @@ COPY_M = 25.0
 """Ponds nearer than this with one id in two layers are one pond, surveyed twice."""
 
 SAME_PLACE_M = 1.0
-"""Ponds nearer than this in two layers are one pond, whatever they are called."""
+"""Ponds nearer than this have room for nothing; in two layers they are one pond, whatever they are called."""
 
 
 def adopt_names(features: Sequence[Feature]) -> None:

@@ -20,7 +20,7 @@ from pondhop.farm.features import Feature, Source, clean_text, listed, shortened
 from pondhop.farm.formats import read_source
 from pondhop.farm.meridian import join_at_meridian
 from pondhop.farm.model import Doubt, Farm, Pond
-from pondhop.farm.names import adopt_names, name_ponds
+from pondhop.farm.names import SAME_PLACE_M, adopt_names, name_ponds
 from pondhop.farm.odd_names import odd_names
 from pondhop.farm.ponds import Draft, areas_of, read_ponds
 from pondhop.farm.projections import settle_zones
@@ -39,9 +39,6 @@ MAX_NARROW_M = 10.0
 
 MAX_SHORE_M = 5.0
 """Further outside an outline than positions are drawn wrong, a sampling point is not in the water at its shore."""
-
-SAME_PLACE_M = 1.0
-"""Two ponds have room for nothing if their points lie nearer than this."""
 
 MIN_FENCED_SHARE = 0.9
 """Of the ponds must lie in an area for it to be taken as a fence by its name alone."""

@@ -13,14 +13,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pondhop.errors import Fault
-from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, find_columns, parted_pair
+from pondhop.farm.columns import AXES, HEADER_ACTION, Columns, cell_of, find_columns, parted_pair
 from pondhop.farm.corners import pond_from_corners
 from pondhop.farm.degrees import Axis, angle_fault, hemisphere, metres, parse_degrees, parse_joined, side_of
 from pondhop.farm.features import Feature, Geometry, OpenZone, Source, is_blank, listed, normal_name, shortened
 from pondhop.farm.hints import POND_COLUMNS
 from pondhop.farm.joined_minutes import table_has_joined_minutes
 from pondhop.farm.letter_o import sign_of_o
-from pondhop.farm.parted_angles import join_parted_angles
+from pondhop.farm.parted_angles import Row, join_parted_angles
 from pondhop.farm.projections import names_band, reproject, utm_crs
 from pondhop.farm.vocabulary import column_words
 from pondhop.farm.words import is_plain_word, is_unnamed
@@ -50,9 +50,6 @@ _CORNER_ORDER = (
 )
 
 _TOTALS = frozenset(map(normal_name, column_words("totals")))
-
-Row = tuple[int, list[str]]
-"""The number of a line and its cells."""
 
 
 def read_table(text: str, source: Source) -> None:
@@ -201,13 +198,9 @@ def _degrees(cell: str, axis: Axis, columns: Columns) -> float | None:
     return parse(cell, axis, columns.sign_of_o)
 
 
-def _cell(row: Sequence[str], index: int | None) -> str:
-    return "" if index is None or index >= len(row) else row[index].strip()
-
-
 def _zone_text(row: Sequence[str], columns: Columns) -> str:
     """The zone of a line, with its band where that has a column of its own: ``48P``."""
-    return _cell(row, columns.zone) + _cell(row, columns.zone_band)
+    return cell_of(row, columns.zone) + cell_of(row, columns.zone_band)
 
 
 def _zone(
@@ -215,7 +208,7 @@ def _zone(
 ) -> str | int | None:
     """The coordinate system of a line with a zone of UTM, or its fault."""
     text = _zone_text(row, columns)
-    side = hemisphere(_cell(row, columns.zone_side))
+    side = hemisphere(cell_of(row, columns.zone_side))
     northing_m = feature.geometry.points[0][1] if feature.geometry.points else 0.0
     zone = utm_crs(text, side[1] if side else 0, northing_m, has_bands=has_bands)
     if zone is None:

@@ -100,6 +100,16 @@ impl<'a> Network<'a> {
         Segment { duration: self.round.visits()[visit as usize].service_duration, earliest, latest }
     }
 
+    /// What follows the last landing of a drone: nothing, if it is within the shift.
+    pub fn end_of_shift(&self) -> Segment {
+        Segment { latest: self.round.fleet().shift.latest, ..Segment::NOTHING }
+    }
+
+    /// Time at the depot between two trips; without effect where drones fly one.
+    pub fn turnaround(&self) -> f64 {
+        self.round.fleet().turnaround.unwrap_or(0.0)
+    }
+
     pub fn load(&self, visit: u32) -> f64 {
         self.round.visits()[visit as usize].load
     }

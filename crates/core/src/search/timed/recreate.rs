@@ -5,8 +5,8 @@
 //! decided for a place and a step. O(visits of the bank x (neighbours + trips)).
 
 use super::network::Network;
-use super::segment::Segment;
-use super::state::{ABSENT, OutOfTime, Place, State, Touched};
+use super::segment::{ROUNDING, Segment};
+use super::state::{ABSENT, OutOfTime, Place, Route, State, Touched};
 use crate::random::Random;
 
 /// Share of places that are passed over, of 2⁶⁴.
@@ -189,7 +189,7 @@ impl Cheapest<'_> {
     fn is_in_time(&self, whole: Option<Segment>, ready: f64, after: Segment) -> bool {
         let max_duration = self.network.round.fleet().max_trip_duration;
         whole
-            .filter(|whole| whole.duration <= max_duration + super::segment::ROUNDING)
+            .filter(|whole| whole.duration <= max_duration + ROUNDING)
             .and_then(|whole| whole.end(ready))
             .is_some_and(|end| after.end(end).is_some())
     }
@@ -222,12 +222,11 @@ impl Cheapest<'_> {
     }
 
     /// The first window in which a trip of this visit alone can be flown as number `number` of a route.
-    fn window_of_trip(&self, route: &super::state::Route, number: usize, leg_out: f64, leg_home: f64) -> Option<u8> {
+    fn window_of_trip(&self, route: &Route, number: usize, leg_out: f64, leg_home: f64) -> Option<u8> {
         let Self { network, state, visit, .. } = *self;
-        let fleet = network.round.fleet();
         let after = match route.trips.get(number) {
-            Some(&next) => state.followed_by(network, fleet.turnaround.unwrap_or(0.0), next, route.after[number])?,
-            None => Segment { latest: fleet.shift.latest, ..Segment::NOTHING },
+            Some(&next) => state.followed_by(network, next, route.after[number])?,
+            None => network.end_of_shift(),
         };
         (0..network.windows(visit).len() as u8).find(|&window| {
             let trip = Segment::NOTHING

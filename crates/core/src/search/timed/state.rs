@@ -249,26 +249,26 @@ impl State {
     /// Fills in when a drone is ready for its trips, and what follows each landing.
     fn time_route(&self, network: &Network<'_>, own: &mut Route) -> Result<(), OutOfTime> {
         let fleet = network.round.fleet();
-        let turnaround = fleet.turnaround.unwrap_or(0.0);
         let mut ready = fleet.shift.earliest;
         own.ready.clear();
         own.ready.push(ready);
         for &trip in &own.trips {
-            ready = self.whole(network, trip).and_then(|whole| whole.end(ready)).ok_or(OutOfTime)? + turnaround;
+            ready = self.whole(network, trip).and_then(|whole| whole.end(ready)).ok_or(OutOfTime)?;
+            ready += network.turnaround();
             own.ready.push(ready);
         }
         own.after.clear();
-        let mut after = Segment { latest: fleet.shift.latest, ..Segment::NOTHING };
+        let mut after = network.end_of_shift();
         for &trip in own.trips.iter().rev() {
             own.after.push(after);
-            after = self.followed_by(network, turnaround, trip, after).ok_or(OutOfTime)?;
+            after = self.followed_by(network, trip, after).ok_or(OutOfTime)?;
         }
         own.after.reverse();
         Ok(())
     }
 
     /// A stay at the depot, a trip, and what follows its landing.
-    pub fn followed_by(&self, network: &Network<'_>, turnaround: f64, trip: u32, after: Segment) -> Option<Segment> {
-        Segment::NOTHING.join(turnaround, self.whole(network, trip)?)?.join(0.0, after)
+    pub fn followed_by(&self, network: &Network<'_>, trip: u32, after: Segment) -> Option<Segment> {
+        Segment::NOTHING.join(network.turnaround(), self.whole(network, trip)?)?.join(0.0, after)
     }
 }
