@@ -51,6 +51,13 @@ THAI = ("บ่อกุ้ง 1", "บ่อกุ้ง 2", "บ่อปล�
         (("Étang 1", "Étang 2"), "cp1252", 14, "1252", ("Étang 1", "Étang 2")),
         (("Пруд 1", "Пруд 2", "Пруд 3"), "cp1251", 14, None, ("Пруд 1", "Пруд 2", "Пруд 3")),
         (("A1", "A2"), "ascii", 5, None, ("A1", "A2")),
+        # A letter that ends a name is no letter that was cut, unless the field is full.
+        (("A塘", "B塘", "C塘"), "gbk", 20, None, ("A塘", "B塘", "C塘")),
+        (("A塘", "B塘", "C塘"), "gbk", 3, None, ("A塘", "B塘", "C塘")),
+        (("Café", "Bonté"), "cp1252", 20, None, ("Café", "Bonté")),
+        (("Pond é", "Pond à"), "cp1252", 6, None, ("Pond é", "Pond à")),
+        (("P1 塘", "P2 塘"), "gbk", 20, None, ("P1 塘", "P2 塘")),
+        (("東塘一", "東塘二"), "big5", 20, None, ("東塘一", "東塘二")),
     ],
 )
 def test_shapefiles_in_the_encodings_of_producers(

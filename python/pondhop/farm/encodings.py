@@ -6,6 +6,7 @@ one script, next to each other as in words, is taken as that, with a note that n
 
 from __future__ import annotations
 
+import codecs
 import itertools
 import unicodedata
 from collections.abc import Callable, Sequence
@@ -15,9 +16,6 @@ from pondhop.farm.features import Notes
 
 MAX_GUESSED_BYTES = 200_000
 """How much of a file is looked at to guess its encoding."""
-
-MAX_LETTER_BYTES = 4
-"""Bytes of the longest letter of UTF-8."""
 
 _LATIN_SIGNS = "\u00b0\u00ba\u00aa\u00b4\u2019"
 """Degree, ordinals and apostrophes, which stand in Latin text without being letters."""
@@ -148,36 +146,36 @@ def guess_encoding(content: bytes) -> tuple[str, str]:
     return "cp1252", "Windows Latin (cp1252)"
 
 
-def guess_of_fields(columns: Sequence[Sequence[bytes]]) -> tuple[str, str] | None:
-    """The codec of texts in fields so many bytes wide, where letters may be cut in two, and its name for people.
+@dataclass(frozen=True)
+class FieldText:
+    """The bytes of a text in a field of so many bytes, where a letter may be cut in two if the field is full."""
 
-    ``None`` where they are plain or Windows Latin.
-    """
-    foreign = [[value for value in column if not value.isascii()] for column in columns]
-    if not any(foreign):
+    content: bytes
+    is_full: bool
+
+    def decoded(self, codec: str) -> str | None:
+        """The text without what is left of a letter that did not fit; ``None`` for what is no text."""
+        try:
+            return codecs.getincrementaldecoder(codec)().decode(self.content, final=not self.is_full)
+        except UnicodeDecodeError:
+            return None
+
+
+def guess_of_fields(texts: Sequence[FieldText]) -> tuple[str, str] | None:
+    """The codec of the fields of a table, and its name for people; ``None`` where they are plain or Windows Latin."""
+    foreign = [text for text in texts if not text.content.isascii()]
+    if not foreign:
         return None
-    if all(decoded_field(value, "utf-8") for column in foreign for value in column):
+    as_utf_8 = [text.decoded("utf-8") for text in foreign]
+    # What is left of a cut letter tells nothing of itself: one letter at least must be whole.
+    if None not in as_utf_8 and not all((text or "").isascii() for text in as_utf_8):
         return "utf-8", "UTF-8"
-    whole: list[bytes] = []
-    cut: list[bytes] = []
-    for column, values in zip(columns, foreign, strict=True):
-        width = max(map(len, column), default=0)
-        whole.extend(values)
-        cut.extend(value[:-1] if len(value) == width else value for value in values)
+    whole = [text.content for text in foreign]
+    cut = [text.content[:-1] if text.is_full else text.content for text in foreign]
     for values in (whole, cut):
         codec, label = guess_encoding(b"\n".join(values)[:MAX_GUESSED_BYTES])
         if codec != "cp1252":
             return codec, label
-    return None
-
-
-def decoded_field(value: bytes, codec: str) -> str | None:
-    """The text of a field, without what is left of a letter that did not fit; ``None`` for what is no text."""
-    for num_cut in range(MAX_LETTER_BYTES):
-        try:
-            return value[: len(value) - num_cut].decode(codec)
-        except UnicodeDecodeError:
-            continue
     return None
 
 

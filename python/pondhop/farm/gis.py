@@ -12,12 +12,13 @@ import stat
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from itertools import takewhile
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from pondhop.errors import Fault
-from pondhop.farm.encodings import decoded_field, guess_of_fields
+from pondhop.farm.encodings import FieldText, guess_of_fields
 from pondhop.farm.features import Feature, Geometry, Source, listed
 from pondhop.farm.projections import reproject
 from pondhop.places import LonLat
@@ -37,6 +38,9 @@ _SHEETS_AS_TEXT = {
 }
 """Else GDAL guesses a heading, and a type for each column from its first cells. Options of one reading it heeds for the
 first sheet alone."""
+
+MAX_DBF_HEADER = 65_536
+"""Bytes of the head of a shapefile's table, whose length is a number of 16 bits."""
 
 _FORBIDDEN = (b"<OGRVRT", b"<VRTDataset", b"gdal_streamed_alg")
 """Marks of drivers that read other files, which GDAL looks for anywhere in the head of a file."""
@@ -124,7 +128,8 @@ def _read_layer(path: Path, layer: str, has_siblings: bool, source: Source) -> N
         meta, fids, wkbs, columns = read(path, **options, encoding="cp1252")
         source.notes.add("Attributes are not in the encoding that the file names; read as Windows Latin (cp1252).")
     if path.suffix.lower() == ".shp" and not _names_encoding(path):
-        columns = _guessed_columns(read(path, **options, encoding="ISO-8859-1")[3], columns, source)
+        written = read(path, **options, encoding="ISO-8859-1")[3]
+        columns = _guessed_columns(written, columns, _field_widths(path), source)
     names = [str(name) for name in meta["fields"]]
     prefix = f"layer {layer!r}, feature " if has_siblings else "feature "
     features = []
@@ -164,7 +169,21 @@ def _names_encoding(path: Path) -> bool:
     }
 
 
-def _guessed_columns(written: Sequence[Any], read: Sequence[Any], source: Source) -> Sequence[Any]:
+def _field_widths(path: Path) -> list[int]:
+    """The bytes that each field of a shapefile's table holds at most (dBASE III: 32 bytes a field from byte 32 on)."""
+    siblings = (other for other in path.parent.iterdir() if other.suffix.lower() == ".dbf")
+    table = next((other for other in siblings if other.stem.casefold() == path.stem.casefold()), None)
+    if table is None:
+        return []
+    with table.open("rb") as file:
+        header = file.read(MAX_DBF_HEADER)
+    starts = takewhile(lambda start: header[start : start + 1] not in {b"", b"\r"}, range(32, len(header) - 16, 32))
+    return [header[start + 16] for start in starts]
+
+
+def _guessed_columns(
+    written: Sequence[Any], read: Sequence[Any], widths: Sequence[int], source: Source
+) -> Sequence[Any]:
     """The columns of a shapefile in the encoding that its texts are in; as GDAL read them where nothing tells.
 
     Parameters
@@ -173,12 +192,26 @@ def _guessed_columns(written: Sequence[Any], read: Sequence[Any], source: Source
         The columns, their bytes as Latin letters.
     read
         The columns as GDAL understood them.
+    widths
+        The bytes that a field of each column holds at most.
     source
         Gets a note where the encoding was guessed.
     """
+
+    def field_text(text: str, width: int) -> FieldText:
+        content = text.encode("latin-1")
+        return FieldText(content, len(content) >= width)
+
+    of_texts = {
+        index: width
+        for index, (column, width) in enumerate(zip(written, widths, strict=False))
+        if column.dtype == object
+    }
     texts = [
-        [value.encode("latin-1") for value in column if isinstance(value, str)] if column.dtype == object else []
-        for column in written
+        field_text(value, width)
+        for index, width in of_texts.items()
+        for value in written[index]
+        if isinstance(value, str)
     ]
     guess = guess_of_fields(texts)
     if guess is None:
@@ -189,14 +222,17 @@ def _guessed_columns(written: Sequence[Any], read: Sequence[Any], source: Source
         "export it as GeoPackage."
     )
 
-    def decoded(value: object) -> object:
+    def decoded(value: object, width: int) -> object:
         if not isinstance(value, str):
             return value
-        content = value.encode("latin-1")
-        text = decoded_field(content, codec)
-        return content.decode(codec, errors="replace") if text is None else text
+        text = field_text(value, width)
+        whole = text.decoded(codec)
+        return text.content.decode(codec, errors="replace") if whole is None else whole
 
-    return [list(map(decoded, column)) if column.dtype == object else column for column in written]
+    return [
+        [decoded(value, of_texts[index]) for value in written[index]] if index in of_texts else column
+        for index, column in enumerate(read)
+    ]
 
 
 def _scalar(value: Any) -> object:
