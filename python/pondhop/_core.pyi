@@ -252,37 +252,77 @@ def territory(
 class Round:
     def __new__(
         cls,
-        depot: ArrayLike,
-        visits: ArrayLike,
-        num_drones: SupportsIndex,
+        problem: Problem,
         *,
-        service_durations: ArrayLike | None = None,
-        loads: ArrayLike | None = None,
-        releases: ArrayLike | None = None,
         windows: Sequence[Sequence[tuple[float, float]]] | None = None,
+        releases_s: ArrayLike | None = None,
+        loads: ArrayLike | None = None,
+        priorities: ArrayLike | None = None,
         capacity: float = ...,
-        max_trip_duration: float = ...,
-        shift: tuple[float, float] = ...,
-        turnaround: float | None = None,
+        shift_s: tuple[float, float] = ...,
+        takeoff_interval_s: float = 0.0,
+        turnaround_s: float | None = None,
+        num_pads: int | None = None,
+        wind_m_s: tuple[float, float] = (0.0, 0.0),
+        max_airspeed_m_s: float = ...,
+        drag_power_w_per_m3_s3: float = 0.0,
         rounding: Literal["exact", "dimacs"] = "exact",
     ) -> Self: ...
     @property
     def num_visits(self) -> int: ...
 
 @final
+class Trip:
+    @property
+    def visits(self) -> list[int]: ...
+    @property
+    def departure_s(self) -> float: ...
+    @property
+    def arrival_s(self) -> float: ...
+    @property
+    def ready_s(self) -> float: ...
+    @property
+    def length_m(self) -> float: ...
+    @property
+    def energy_j(self) -> float: ...
+    @property
+    def times_s(self) -> NDArray[np.float64]: ...
+    @property
+    def legs(self) -> NDArray[np.float64]: ...
+    @property
+    def energies_j(self) -> NDArray[np.float64]: ...
+
+@final
+class RoundViolation:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def visit(self) -> int | None: ...
+    @property
+    def route(self) -> int | None: ...
+    @property
+    def trip(self) -> int | None: ...
+    @property
+    def value(self) -> float | None: ...
+    @property
+    def limit(self) -> float | None: ...
+
+@final
 class RoundPlan:
+    @property
+    def trips(self) -> list[list[Trip]]: ...
     @property
     def routes(self) -> list[list[list[int]]]: ...
     @property
-    def trip_times(self) -> list[list[tuple[float, float]]]: ...
-    @property
     def total_length(self) -> float: ...
     @property
-    def makespan(self) -> float: ...
+    def total_energy_j(self) -> float: ...
+    @property
+    def makespan_s(self) -> float: ...
     @property
     def is_feasible(self) -> bool: ...
     @property
-    def violations(self) -> list[str]: ...
+    def violations(self) -> list[RoundViolation]: ...
 
 def search_round(
     problem: Round,
@@ -290,6 +330,7 @@ def search_round(
     seed: int = 1,
     time_limit_s: float | None = None,
     iterations: int | None = None,
+    objective: Literal["max", "total"] = "max",
     progress: Callable[[float, int, float], object] | None = None,
 ) -> tuple[list[list[list[int]]], float, int, bool]: ...
 def evaluate_round(problem: Round, routes: Sequence[Sequence[Sequence[int]]]) -> RoundPlan: ...

@@ -111,18 +111,21 @@ def read_round(path: str | Path, *, rounding: Rounding = "exact", num_drones: in
 
 def _to_round(table: _Table, rounding: Rounding, num_drones: int | None) -> Round:
     first, *rest = table.positions
-    return _core.Round(
+    problem = _core.Problem(
         first,
         rest,
         num_drones or table.num_drones or len(rest),
-        service_durations=table.services[1:] or None,
+        service_durations_s=table.services[1:] or None,
+        max_duration_s=table.max_trip_duration,
+    )
+    return _core.Round(
+        problem,
         loads=table.loads[1:] or None,
-        releases=table.releases[1:] or None,
+        releases_s=table.releases[1:] or None,
         windows=[[window] for window in table.windows[1:]] if table.windows else None,
         capacity=table.capacity,
-        max_trip_duration=table.max_trip_duration,
-        shift=table.windows[0] if table.windows else (0.0, math.inf),
-        turnaround=0.0 if table.has_trips else None,
+        shift_s=table.windows[0] if table.windows else (0.0, math.inf),
+        turnaround_s=0.0 if table.has_trips else None,
         rounding=rounding,
     )
 

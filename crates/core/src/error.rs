@@ -37,6 +37,11 @@ impl Faults {
         self.0.push(Fault { path: path.into(), message: message.into(), action: action.to_owned() });
     }
 
+    /// Notes the faults of a part that was checked on its own.
+    pub fn extend(&mut self, part: InvalidInput) {
+        self.0.extend(part.faults);
+    }
+
     /// Passes on what `result` holds if nothing was wrong, here or there.
     ///
     /// # Errors
@@ -45,7 +50,7 @@ impl Faults {
         match result {
             Ok(value) => self.into_result(value),
             Err(error) => {
-                self.0.extend(error.faults);
+                self.extend(error);
                 Err(InvalidInput { faults: self.0 })
             }
         }

@@ -108,6 +108,18 @@ impl VehicleType {
         }
     }
 
+    /// The same drones in a layer of their own.
+    #[must_use]
+    pub fn in_layer(&self, layer: Layer) -> Self {
+        let way_home = self.way_home.map(|way_home| WayHome { fixed_duration: layer.way_home_duration, ..way_home });
+        let energy = Energy {
+            takeoff_energy: layer.takeoff_energy,
+            way_home_fixed_energy: layer.way_home_energy,
+            ..self.energy
+        };
+        Self { takeoff_duration: layer.takeoff_duration, way_home, energy, ..*self }
+    }
+
     /// Whether the first and the last leg of a route take as long as any other of their length.
     #[must_use]
     pub fn has_plain_depot_legs(&self) -> bool {
@@ -197,18 +209,8 @@ impl Problem {
     /// The drone that flies a route of a plan, by the index of the route.
     #[must_use]
     pub fn drone_of(&self, route: usize) -> VehicleType {
-        let Some(layer) = self.layers.get(route).or(self.layers.last()) else { return self.vehicle_type };
-        VehicleType {
-            takeoff_duration: layer.takeoff_duration,
-            way_home: (self.vehicle_type.way_home)
-                .map(|way_home| WayHome { fixed_duration: layer.way_home_duration, ..way_home }),
-            energy: Energy {
-                takeoff_energy: layer.takeoff_energy,
-                way_home_fixed_energy: layer.way_home_energy,
-                ..self.vehicle_type.energy
-            },
-            ..self.vehicle_type
-        }
+        let layer = self.layers.get(route).or(self.layers.last());
+        layer.map_or(self.vehicle_type, |&layer| self.vehicle_type.in_layer(layer))
     }
 
     /// A research instance: visits without service time, `num_routes` drones at unit speed without limits.

@@ -1,4 +1,8 @@
-//! What a leg costs.
+//! What a leg costs, in calm air and in wind.
+//!
+//! A drone holds its ground speed as far as its airspeed allows: the wind triangle
+//! (docs/explanation/rounds.md derives [`Air::speeds`]). The ground velocities that can be flown are the
+//! intersection of two discs, which is convex, so times keep the triangle inequality.
 
 use crate::geometry::Point;
 use crate::problem::VehicleType;
@@ -12,6 +16,51 @@ pub enum LegKind {
     Between,
     /// From the last visit to the depot: the way home, if the drones have one of their own.
     Last,
+}
+
+/// The air that drones fly through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Air {
+    /// Velocity of the wind, in metres per second: where it blows to.
+    pub wind: Point,
+    /// The fastest that drones fly through the air, in metres per second; infinite where nothing limits it.
+    pub max_airspeed: f64,
+    /// Watts of level flight for each cubic metre per second of airspeed, beyond what a leg takes in calm air.
+    pub drag_power: f64,
+}
+
+impl Air {
+    /// No wind, and no limit.
+    pub const CALM: Self = Self { wind: Point::new(0.0, 0.0), max_airspeed: f64::INFINITY, drag_power: 0.0 };
+
+    /// The speed of the wind.
+    #[must_use]
+    pub fn wind_speed(&self) -> f64 {
+        self.wind.distance(Point::default())
+    }
+
+    /// Whether a leg takes what it takes in calm air, whatever its direction.
+    #[must_use]
+    pub fn is_calm_at(&self, speed: f64) -> bool {
+        self.wind == Point::default() && speed <= self.max_airspeed
+    }
+
+    /// The speed over ground and through the air with which a leg of (`dx`, `dy`) is flown at `speed` over ground, or slower if
+    /// the airspeed is not enough; `None` if a drone makes no way against the wind.
+    #[must_use]
+    pub fn speeds(&self, dx: f64, dy: f64, speed: f64) -> Option<(f64, f64)> {
+        let length = (dx * dx + dy * dy).sqrt();
+        let along = (self.wind.x * dx + self.wind.y * dy) / length;
+        let squared_wind = self.wind.x * self.wind.x + self.wind.y * self.wind.y;
+        let squared_across = (squared_wind - along * along).max(0.0);
+        let squared_most = self.max_airspeed * self.max_airspeed;
+        if squared_across > squared_most {
+            return None;
+        }
+        let ground_speed = speed.min(along + (squared_most - squared_across).sqrt());
+        let squared_airspeed = (ground_speed - along) * (ground_speed - along) + squared_across;
+        (ground_speed > 0.0).then(|| (ground_speed, squared_airspeed.sqrt()))
+    }
 }
 
 /// What one leg comes to.
@@ -32,6 +81,31 @@ impl Leg {
         let length = leg_length(from, to);
         let duration = leg_duration(length, kind, vehicle_type);
         Self { length, duration, energy: leg_energy(length, kind, vehicle_type) }
+    }
+
+    /// The same through moving air; `None` if it cannot be flown.
+    #[must_use]
+    pub fn in_air(from: Point, to: Point, kind: LegKind, vehicle_type: &VehicleType, air: &Air) -> Option<Self> {
+        let calm = Self::new(from, to, kind, vehicle_type);
+        let speed = match (kind, vehicle_type.way_home) {
+            (LegKind::Last, Some(way_home)) => way_home.speed,
+            _ => vehicle_type.speed,
+        };
+        if calm.length == 0.0 || air.is_calm_at(speed) {
+            return Some(calm);
+        }
+        let (ground_speed, airspeed) = air.speeds(to.x - from.x, to.y - from.y, speed)?;
+        let power = match (kind, vehicle_type.way_home) {
+            (LegKind::Last, Some(_)) => vehicle_type.energy.way_home_power,
+            _ => vehicle_type.energy.leg_power,
+        };
+        let windy_power = power + air.drag_power * (airspeed * airspeed * airspeed - speed * speed * speed);
+        let (calm_cruise, cruise) = (calm.length / speed, calm.length / ground_speed);
+        Some(Self {
+            length: calm.length,
+            duration: calm.duration - calm_cruise + cruise,
+            energy: calm.energy - calm_cruise * power + cruise * windy_power,
+        })
     }
 }
 
@@ -84,6 +158,46 @@ mod tests {
             assert_eq!(leg_duration(0.0, kind, &vehicle_type), 0.0);
             assert_eq!(leg_duration(0.5, kind, &vehicle_type), 3.1);
             assert_eq!(leg_energy(60.0, kind, &vehicle_type), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_leg_in_wind_is_a_hand_computed_one() {
+        // 8 m/s from the west, 10 m/s over ground, at most 12 through the air, 3 s a stop; P = 354 + 0.032 V^3.
+        let energy = Energy { leg_power: 354.0 + 32.0, leg_stop_power: 354.0, ..Energy::UNKNOWN };
+        let vehicle_type = VehicleType { speed: 10.0, leg_stop_duration: 3.0, energy, ..VehicleType::unlimited(1) };
+        let air = Air { wind: Point::new(8.0, 0.0), max_airspeed: 12.0, drag_power: 0.032 };
+        let (depot, east, north) = (Point::default(), Point::new(80.0, 0.0), Point::new(0.0, 80.0));
+        let leg = |from, to, air| Leg::in_air(from, to, LegKind::Between, &vehicle_type, &air);
+        let (out, home) = (leg(depot, east, air).unwrap(), leg(east, depot, air).unwrap());
+        let across = leg(depot, north, air).unwrap();
+        assert!((out.duration - 11.0).abs() < 1e-9 && (home.duration - 23.0).abs() < 1e-9);
+        assert!((out.energy - (8.0 * 354.256 + 3.0 * 354.0)).abs() < 1e-9);
+        assert!((home.energy - (20.0 * 409.296 + 3.0 * 354.0)).abs() < 1e-9);
+        assert!((across.duration - (80.0 / 80.0_f64.sqrt() + 3.0)).abs() < 1e-9);
+        // As strong as the drone is fast: neither across nor against it.
+        let strong = Air { wind: Point::new(12.0, 0.0), ..air };
+        assert_eq!((leg(depot, north, strong), leg(east, depot, strong)), (None, None));
+        assert!(leg(depot, east, strong).is_some());
+        // In calm air nothing changes, unless the drone is slower through the air than it should be over ground.
+        let calm = Leg::new(depot, east, LegKind::Between, &vehicle_type);
+        assert_eq!(leg(depot, east, Air { wind: Point::default(), ..air }), Some(calm));
+        let slow = Air { wind: Point::default(), max_airspeed: 8.0, ..air };
+        assert_eq!(leg(depot, east, slow).unwrap().duration, 13.0);
+    }
+
+    proptest::proptest! {
+        /// No way round is shorter in time.
+        #[test]
+        fn times_in_wind_keep_the_triangle_inequality(
+            (wind_x, wind_y) in (-8.0..8.0, -8.0..8.0),
+            places in proptest::array::uniform3((-100.0..100.0, -100.0..100.0)),
+        ) {
+            let vehicle_type = VehicleType { speed: 9.0, leg_stop_duration: 2.0, ..VehicleType::unlimited(1) };
+            let air = Air { wind: Point::new(wind_x, wind_y), max_airspeed: 12.0, drag_power: 0.0 };
+            let [a, b, c] = places.map(|(x, y)| Point::new(x, y));
+            let time = |from, to| Leg::in_air(from, to, LegKind::Between, &vehicle_type, &air).unwrap().duration;
+            proptest::prop_assert!(time(a, c) <= time(a, b) + time(b, c) + 1e-9);
         }
     }
 

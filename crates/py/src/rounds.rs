@@ -4,9 +4,14 @@ use crate::arguments;
 use crate::arguments::{Real, Seed, Whole, Word, checked, shown};
 use crate::effort::{callback, limits, watched};
 use crate::error::to_python;
+use crate::problem::Problem;
+use crate::values::table;
+use numpy::PyArray2;
 use pondhop_core::error::Faults;
+use pondhop_core::geometry::Point;
 use pondhop_core::rounds::{Fleet, RoundVisit, Rounding, TimeWindow, evaluate_round as judge};
-use pondhop_core::search::{Options, solve_round};
+use pondhop_core::search::{Goal, Options, solve_round};
+use pondhop_core::travel::Air;
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,29 +19,33 @@ use std::time::Instant;
 /// Trips of each drone, each the visits in flying order.
 type Routes = Vec<Vec<Vec<usize>>>;
 
-/// A depot, visits with windows, releases and loads, and drones that may fly several trips: validated, immutable.
-///
-/// Legs are as long as they take: drones fly at unit speed, as in research instances.
+/// What is to be flown in one round, by drones that may fly several trips: validated, immutable.
 ///
 /// Parameters
 /// ----------
-/// depot
-///     Position of the depot, shape (2,).
-/// visits
-///     Positions of the visits, shape (n, 2), n >= 1.
-/// num_drones
-///     How many drones there are.
-/// service_durations, loads, releases
-///     Per visit, shape (n,): time on station, what it takes of a trip's capacity, and the time before which no trip with it
-///     takes off; 0 everywhere if not given.
+/// problem
+///     Depot, places, services and drones; its limits of length, time and energy are those of one trip.
 /// windows
-///     For each visit the pairs ``(earliest, latest)`` between which its service may begin; none: at any time.
-/// capacity, max_trip_duration
-///     The load and the time that one trip may take.
-/// shift
-///     When drones may take off first, and must be back for good.
-/// turnaround
+///     For each visit the pairs ``(earliest, latest)`` in seconds between which its service may begin; none: at any time.
+/// releases_s, loads, priorities
+///     Per visit, shape (n,): the time before which no trip with it takes off, what it takes of a trip's capacity, 0 everywhere
+///     if not given; and what it is worth beside others where not all can be made, 1 everywhere if not given.
+/// capacity
+///     The load that one trip may take.
+/// shift_s
+///     When the first drone may take off, and when all must be back for good.
+/// takeoff_interval_s
+///     How much later each drone may take off than the one before it.
+/// turnaround_s
 ///     Time at the depot between two trips of a drone; if not given, each flies one trip.
+/// num_pads
+///     How many drones the depot can turn round at once; if not given, all.
+/// wind_m_s
+///     Velocity of the wind towards east and north.
+/// max_airspeed_m_s
+///     The fastest that drones fly through the air.
+/// drag_power_w_per_m3_s3
+///     What the third power of the airspeed adds to the power of flight.
 /// rounding
 ///     ``"exact"``, or ``"dimacs"``: legs without all but their first decimal.
 ///
@@ -52,50 +61,64 @@ pub struct Round {
 #[pymethods]
 impl Round {
     #[new]
-    #[pyo3(signature = (depot, visits, num_drones, *, service_durations=None, loads=None, releases=None, windows=None,
-                        capacity=Real::of(f64::INFINITY), max_trip_duration=Real::of(f64::INFINITY),
-                        shift=(0.0, f64::INFINITY), turnaround=None, rounding=Word::default()))]
+    #[pyo3(signature = (problem, *, windows=None, releases_s=None, loads=None, priorities=None,
+                        capacity=Real::of(f64::INFINITY), shift_s=(0.0, f64::INFINITY), takeoff_interval_s=Real::of(0.0),
+                        turnaround_s=None, num_pads=None, wind_m_s=(0.0, 0.0), max_airspeed_m_s=Real::of(f64::INFINITY),
+                        drag_power_w_per_m3_s3=Real::of(0.0), rounding=Word::default()))]
     #[allow(clippy::too_many_arguments)]
     fn new(
-        depot: &Bound<'_, PyAny>,
-        visits: &Bound<'_, PyAny>,
-        num_drones: &Bound<'_, PyAny>,
-        service_durations: Option<&Bound<'_, PyAny>>,
-        loads: Option<&Bound<'_, PyAny>>,
-        releases: Option<&Bound<'_, PyAny>>,
+        problem: &Problem,
         windows: Option<&Bound<'_, PyAny>>,
+        releases_s: Option<&Bound<'_, PyAny>>,
+        loads: Option<&Bound<'_, PyAny>>,
+        priorities: Option<&Bound<'_, PyAny>>,
         capacity: Real,
-        max_trip_duration: Real,
-        shift: (f64, f64),
-        turnaround: Option<Real>,
+        shift_s: (f64, f64),
+        takeoff_interval_s: Real,
+        turnaround_s: Option<Real>,
+        num_pads: Option<Whole>,
+        wind_m_s: (f64, f64),
+        max_airspeed_m_s: Real,
+        drag_power_w_per_m3_s3: Real,
         rounding: Word<'_>,
     ) -> PyResult<Self> {
         let mut faults = Faults::default();
-        let depot = arguments::point(&mut faults, "depot", depot)?.unwrap_or_default();
-        let positions = arguments::points(&mut faults, "visits", visits)?.unwrap_or_default();
-        let num_visits = (!positions.is_empty()).then_some(positions.len());
+        let problem = &problem.inner;
+        let num_visits = Some(problem.num_visits());
         let mut values = |name, given| arguments::values(&mut faults, name, given, num_visits);
-        let service_durations = values("service_durations", service_durations)?;
+        let releases = values("releases_s", releases_s)?;
         let loads = values("loads", loads)?;
-        let releases = values("releases", releases)?;
-        let windows = windows_of(&mut faults, windows, positions.len())?;
-        let at = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(0.0);
-        let visits = positions.into_iter().zip(windows).enumerate().map(|(index, (position, windows))| RoundVisit {
-            position,
-            service_duration: at(&service_durations, index),
+        let priorities = values("priorities", priorities)?;
+        let windows = windows_of(&mut faults, windows, problem.num_visits())?;
+        let at = |values: &[f64], index: usize, default: f64| values.get(index).copied().unwrap_or(default);
+        let visits = problem.visits().iter().zip(windows).enumerate().map(|(index, (&visit, windows))| RoundVisit {
+            visit,
             windows,
-            release: at(&releases, index),
-            load: at(&loads, index),
+            release: at(&releases, index, 0.0),
+            load: at(&loads, index, 0.0),
+            priority: at(&priorities, index, 1.0),
         });
+        let air = Air {
+            wind: Point::new(wind_m_s.0, wind_m_s.1),
+            max_airspeed: max_airspeed_m_s.number(&mut faults, "max_airspeed_m_s", f64::INFINITY),
+            drag_power: drag_power_w_per_m3_s3.number(&mut faults, "drag_power_w_per_m3_s3", 0.0),
+        };
+        let num_pads = num_pads
+            .map(|num_pads| num_pads.number(&mut faults, "num_pads", &(1..=u64::from(u32::MAX)), "give 1 or more"));
+        let num_pads = num_pads.and_then(|num_pads| usize::try_from(num_pads).ok()).unwrap_or(usize::MAX);
         let fleet = Fleet {
-            num_drones: arguments::num_drones(&mut faults, num_drones)?,
+            vehicle_type: problem.vehicle_type(),
+            layers: problem.layers().to_vec(),
+            air,
             capacity: capacity.number(&mut faults, "capacity", 1.0),
-            max_trip_duration: max_trip_duration.number(&mut faults, "max_trip_duration", 1.0),
-            shift: TimeWindow { earliest: shift.0, latest: shift.1 },
-            turnaround: turnaround.map(|turnaround| turnaround.number(&mut faults, "turnaround", 0.0)),
+            shift: TimeWindow { earliest: shift_s.0, latest: shift_s.1 },
+            takeoff_interval: takeoff_interval_s.number(&mut faults, "takeoff_interval_s", 0.0),
+            turnaround: turnaround_s.map(|turnaround| turnaround.number(&mut faults, "turnaround_s", 0.0)),
+            num_pads,
         };
         let rounding =
             rounding.meaning(&mut faults, "rounding", &[("exact", Rounding::Exact), ("dimacs", Rounding::Dimacs)])?;
+        let depot = problem.depot().position;
         let round = pondhop_core::rounds::Round::new(depot, visits.collect(), fleet, rounding);
         let inner = faults.with(round).map_err(|error| to_python(&error))?;
         Ok(Self { inner: Arc::new(inner) })
@@ -132,7 +155,8 @@ fn windows_of(
     }
 }
 
-/// Minimise the total length of the trips of a round, by ruin and recreate.
+/// Plan the trips of a round by ruin and recreate, so that the last drone lands early, or what all fly takes little time. Where
+/// not all visits can be made, those of most priority are.
 ///
 /// Parameters
 /// ----------
@@ -142,8 +166,10 @@ fn windows_of(
 ///     Same seed and iterations: same routes.
 /// time_limit_s, iterations
 ///     Wall time and steps; at least one of them.
+/// objective
+///     ``"max"``: the last landing; ``"total"``: the time that all drones fly.
 /// progress
-///     Called about ten times a second with the total length so far, the iterations and the share of the effort used.
+///     Called about ten times a second with the last landing or the time flown so far, the iterations and the share of the effort used.
 ///
 /// Returns
 /// -------
@@ -161,13 +187,14 @@ fn windows_of(
 /// InvalidInput
 ///     With every argument that has no meaning.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, progress=None))]
+#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, objective=Word::default(), progress=None))]
 pub fn search_round(
     py: Python<'_>,
     problem: &Round,
     seed: Seed,
     time_limit_s: Option<Real>,
     iterations: Option<Whole>,
+    objective: Word<'_>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Routes, f64, u64, bool)> {
     let begin = Instant::now();
@@ -177,13 +204,166 @@ pub fn search_round(
     if time_limit_s.is_none() && iterations.is_none() {
         faults.add("time_limit_s", "there is no limit to the effort", "give time_limit_s or iterations");
     }
+    let goal = objective.meaning(&mut faults, "objective", &[("max", Goal::Max), ("total", Goal::Total)])?;
     let progress = callback(&mut faults, progress)?;
     checked(faults, ())?;
     let round = Arc::clone(&problem.inner);
     let (outcome, elapsed_s, is_interrupted) = watched(py, begin, time_limit_s, progress, move |clock, watch| {
-        solve_round(&round, &Options { seed, max_iterations: iterations, clock, watch, ..Options::default() })
+        solve_round(&round, &Options { seed, max_iterations: iterations, clock, watch, goal, ..Options::default() })
     })?;
     Ok((outcome.routes, elapsed_s, outcome.num_iterations, is_interrupted))
+}
+
+/// What a drone flies between two stays at the depot.
+#[pyclass(frozen, module = "pondhop._core")]
+pub struct Trip {
+    inner: pondhop_core::rounds::Trip,
+}
+
+#[pymethods]
+impl Trip {
+    /// The visits in flying order.
+    #[getter]
+    fn visits(&self) -> Vec<usize> {
+        self.inner.stops.iter().map(|stop| stop.visit).collect()
+    }
+
+    /// When it takes off, in seconds.
+    #[getter]
+    fn departure_s(&self) -> f64 {
+        self.inner.departure
+    }
+
+    /// When it lands, in seconds.
+    #[getter]
+    fn arrival_s(&self) -> f64 {
+        self.inner.arrival
+    }
+
+    /// When the drone is ready for its next trip, in seconds; the landing, if there is none.
+    #[getter]
+    fn ready_s(&self) -> f64 {
+        self.inner.ready
+    }
+
+    /// Length from depot to depot, in metres.
+    #[getter]
+    fn length_m(&self) -> f64 {
+        self.inner.length
+    }
+
+    /// What it takes from the battery, in joules.
+    #[getter]
+    fn energy_j(&self) -> f64 {
+        self.inner.energy
+    }
+
+    /// For each visit when the drone arrives, begins and leaves, in seconds, shape (n, 3).
+    #[getter]
+    fn times_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.inner.stops.iter().flat_map(|stop| [stop.arrival, stop.start, stop.departure]), 3)
+    }
+
+    /// For each leg, the way home last, metres, seconds and joules, shape (n + 1, 3).
+    #[getter]
+    fn legs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let legs = self.inner.stops.iter().map(|stop| stop.leg).chain([self.inner.last_leg]);
+        table(py, legs.flat_map(|leg| [leg.length, leg.duration, leg.energy]), 3)
+    }
+
+    /// For each visit what the trip has taken from the battery when the drone leaves, and what the way home from there takes, in
+    /// joules, shape (n, 2).
+    #[getter]
+    fn energies_j<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.inner.stops.iter().flat_map(|stop| [stop.energy_used, stop.energy_home]), 2)
+    }
+}
+
+/// A rule that a plan of a round breaks.
+#[pyclass(frozen, module = "pondhop._core")]
+pub struct RoundViolation {
+    inner: pondhop_core::rounds::RoundViolation,
+}
+
+/// Kind, visit, route, trip, value and limit of a violation.
+type Broken = (&'static str, Option<usize>, Option<usize>, Option<usize>, Option<f64>, Option<f64>);
+
+impl RoundViolation {
+    fn fields(&self) -> Broken {
+        use pondhop_core::rounds::RoundViolation as Kind;
+        match self.inner {
+            Kind::Unserved { visit } => ("unserved", Some(visit), None, None, None, None),
+            Kind::Repeated { visit, num_times } => {
+                ("repeated", Some(visit), None, None, Some(num_times as f64), Some(1.0))
+            }
+            Kind::TooManyRoutes { num_routes, num_drones } => {
+                ("too_many_routes", None, None, None, Some(num_routes as f64), Some(num_drones as f64))
+            }
+            Kind::TooManyTrips { route, num_trips } => {
+                ("too_many_trips", None, Some(route), None, Some(num_trips as f64), Some(1.0))
+            }
+            Kind::OverCapacity { route, trip, load, capacity } => {
+                ("too_many_samples", None, Some(route), Some(trip), Some(load), Some(capacity))
+            }
+            Kind::Late { visit, by } => ("late", Some(visit), None, None, Some(by), None),
+            Kind::TooSlow { route, trip, duration, max_duration } => {
+                ("too_slow", None, Some(route), Some(trip), Some(duration), Some(max_duration))
+            }
+            Kind::TooLong { route, trip, length, max_length } => {
+                ("too_long", None, Some(route), Some(trip), Some(length), Some(max_length))
+            }
+            Kind::TooMuchEnergy { route, trip, energy, usable_energy } => {
+                ("too_much_energy", None, Some(route), Some(trip), Some(energy), Some(usable_energy))
+            }
+            Kind::NoWayHome { route, trip, visit, by } => {
+                ("no_way_home", Some(visit), Some(route), Some(trip), Some(by), None)
+            }
+            Kind::ShiftOver { route, by } => ("after_the_end", None, Some(route), None, Some(by), None),
+        }
+    }
+}
+
+#[pymethods]
+impl RoundViolation {
+    /// What rule it is; docs/reference/json.md lists them.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.fields().0
+    }
+
+    /// Index of the visit, or None.
+    #[getter]
+    fn visit(&self) -> Option<usize> {
+        self.fields().1
+    }
+
+    /// Index of the drone, or None.
+    #[getter]
+    fn route(&self) -> Option<usize> {
+        self.fields().2
+    }
+
+    /// Index of the trip of that drone, or None.
+    #[getter]
+    fn trip(&self) -> Option<usize> {
+        self.fields().3
+    }
+
+    /// What it comes to, or by how much it is too much: times, trips, metres, seconds or joules; or None.
+    #[getter]
+    fn value(&self) -> Option<f64> {
+        self.fields().4
+    }
+
+    /// What it may be at most, or None.
+    #[getter]
+    fn limit(&self) -> Option<f64> {
+        self.fields().5
+    }
+
+    fn __str__(&self) -> String {
+        self.inner.to_string()
+    }
 }
 
 /// A plan of a round, recomputed from bare routes by `evaluate_round`.
@@ -194,19 +374,18 @@ pub struct RoundPlan {
 
 #[pymethods]
 impl RoundPlan {
-    /// The trips of each drone, each the visits in flying order.
+    /// The trips of each drone; none of one that does not fly.
+    #[getter]
+    fn trips(&self) -> Vec<Vec<Trip>> {
+        let trip = |trip: &pondhop_core::rounds::Trip| Trip { inner: trip.clone() };
+        self.inner.routes.iter().map(|trips| trips.iter().map(trip).collect()).collect()
+    }
+
+    /// The visits of the trips of each drone in flying order.
     #[getter]
     fn routes(&self) -> Routes {
         let visits = |trip: &pondhop_core::rounds::Trip| trip.stops.iter().map(|stop| stop.visit).collect();
         self.inner.routes.iter().map(|trips| trips.iter().map(visits).collect()).collect()
-    }
-
-    /// Take-off and landing of each trip.
-    #[getter]
-    fn trip_times(&self) -> Vec<Vec<(f64, f64)>> {
-        let times =
-            |trips: &Vec<pondhop_core::rounds::Trip>| trips.iter().map(|trip| (trip.departure, trip.arrival)).collect();
-        self.inner.routes.iter().map(times).collect()
     }
 
     /// The sum of the lengths of all trips.
@@ -215,9 +394,15 @@ impl RoundPlan {
         self.inner.total_length()
     }
 
-    /// When the last drone lands.
+    /// What all trips take from their batteries, in joules.
     #[getter]
-    fn makespan(&self) -> f64 {
+    fn total_energy_j(&self) -> f64 {
+        self.inner.total_energy()
+    }
+
+    /// When the last drone lands, in seconds.
+    #[getter]
+    fn makespan_s(&self) -> f64 {
         self.inner.makespan()
     }
 
@@ -227,10 +412,10 @@ impl RoundPlan {
         self.inner.is_feasible()
     }
 
-    /// What is wrong with it, a sentence each.
+    /// What is wrong with it.
     #[getter]
-    fn violations(&self) -> Vec<String> {
-        self.inner.violations.iter().map(ToString::to_string).collect()
+    fn violations(&self) -> Vec<RoundViolation> {
+        self.inner.violations.iter().map(|&inner| RoundViolation { inner }).collect()
     }
 }
 

@@ -1,35 +1,35 @@
 //! The one truth about a plan of a round: everything recomputed from the round and bare routes.
 //!
 //! It flies every trip twice: forward as early as it can, for arrivals, and backward from its landing, for the latest take-off
-//! that lands as early. No code is shared with the search beyond what a leg is ([`Round::leg`]). O(n) for n visits with a
+//! that lands as early. Trips of all drones are flown in the order of their landings, because drones wait for each other where
+//! they are turned round. No code is shared with the search beyond what a leg is ([`Round::leg`]). O(n) for n visits with a
 //! bounded number of windows, O(n^2) for trips that must wait on the ground to be short enough.
 
 use super::plan::{RoundPlan, RoundStop, RoundViolation, Trip};
 use super::round::{Round, RoundVisit};
 use crate::error::{Faults, InvalidInput};
+use crate::problem::VehicleType;
+use crate::travel::LegKind;
 
 /// How late something may be by rounding, relative to the time it is late at.
 const TOLERANCE: f64 = 1e-9;
 
-/// Flies `routes` (for each drone its trips, each the visits in flying order) and reports schedule and violations. Empty
-/// trips and routes are dropped. A visit that comes too late for all its windows is served at once, and is a violation.
+/// Flies `routes` (for each drone its trips, each the visits in flying order) and reports schedule, energy and violations. Route
+/// i is flown by drone i. Empty trips are dropped. A visit that comes too late for all its windows is served at once, and is a
+/// violation.
 ///
 /// # Errors
 /// [`InvalidInput`] if a trip names a visit that does not exist.
 pub fn evaluate_round(round: &Round, routes: &[Vec<Vec<usize>>]) -> Result<RoundPlan, InvalidInput> {
     check_indices(round, routes)?;
-    let mut violations = Vec::new();
-    let mut flown: Vec<Vec<Trip>> = Vec::new();
-    for trips in routes {
-        let trips: Vec<&Vec<usize>> = trips.iter().filter(|trip| !trip.is_empty()).collect();
-        if !trips.is_empty() {
-            let route = flown.len();
-            flown.push(fly_route(round, route, &trips, &mut violations));
-        }
+    let mut late = Vec::new();
+    let flown = fly_all(round, routes, &mut late);
+    let mut violations = count_violations(round, &flown);
+    for (route, trips) in flown.iter().enumerate() {
+        violations.extend(limit_violations(round, route, trips));
     }
-    let mut all = count_violations(round, &flown);
-    all.extend(violations);
-    Ok(RoundPlan { routes: flown, violations: all })
+    violations.extend(late);
+    Ok(RoundPlan { routes: flown, violations })
 }
 
 fn check_indices(round: &Round, routes: &[Vec<Vec<usize>>]) -> Result<(), InvalidInput> {
@@ -52,79 +52,131 @@ fn check_indices(round: &Round, routes: &[Vec<Vec<usize>>]) -> Result<(), Invali
     faults.into_result(())
 }
 
-fn fly_route(round: &Round, route: usize, trips: &[&Vec<usize>], violations: &mut Vec<RoundViolation>) -> Vec<Trip> {
+/// Flies the trips of all drones, those that land first first: the turnaround after a landing begins when a place is free.
+fn fly_all(round: &Round, routes: &[Vec<Vec<usize>>], late: &mut Vec<RoundViolation>) -> Vec<Vec<Trip>> {
     let fleet = round.fleet();
+    let mut flown: Vec<Vec<Trip>> = vec![Vec::new(); routes.len()];
+    let waiting = |trips: &Vec<Vec<usize>>| trips.iter().filter(|trip| !trip.is_empty()).cloned().rev().collect();
+    let mut left: Vec<Vec<Vec<usize>>> = routes.iter().map(waiting).collect();
+    let fly_next = |route: usize, left: &mut Vec<Vec<Vec<usize>>>, ready: f64| {
+        left[route].pop().map(|visits| fly_trip(round, &fleet.drone(route), &visits, ready))
+    };
+    let mut in_the_air: Vec<Option<(Trip, Vec<RoundViolation>)>> =
+        (0..routes.len()).map(|route| fly_next(route, &mut left, fleet.first_takeoff(route))).collect();
+    let mut pads_free = vec![f64::NEG_INFINITY; fleet.num_pads.min(routes.len())];
+    loop {
+        let landing = |(route, flight): (usize, &Option<(Trip, Vec<RoundViolation>)>)| {
+            flight.as_ref().map(|(trip, _)| (trip.arrival, route))
+        };
+        let earliest = |one: &(f64, usize), other: &(f64, usize)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
+        let Some((arrival, route)) = in_the_air.iter().enumerate().filter_map(landing).min_by(earliest) else { break };
+        let Some((mut trip, came_late)) = in_the_air[route].take() else { break };
+        late.extend(came_late);
+        if !left[route].is_empty() {
+            let by_time = |one: &&mut f64, other: &&mut f64| one.total_cmp(other);
+            if let Some(pad) = pads_free.iter_mut().min_by(by_time) {
+                trip.ready = arrival.max(*pad) + fleet.turnaround.unwrap_or(0.0);
+                *pad = trip.ready;
+            }
+            in_the_air[route] = fly_next(route, &mut left, trip.ready);
+        }
+        flown[route].push(trip);
+    }
+    flown
+}
+
+fn limit_violations(round: &Round, route: usize, trips: &[Trip]) -> Vec<RoundViolation> {
+    let fleet = round.fleet();
+    let mut violations = Vec::new();
     if fleet.turnaround.is_none() && trips.len() > 1 {
         violations.push(RoundViolation::TooManyTrips { route, num_trips: trips.len() });
     }
-    let mut ready = fleet.shift.earliest;
-    let mut flown = Vec::with_capacity(trips.len());
-    for (index, visits) in trips.iter().enumerate() {
-        let trip = fly_trip(round, visits, ready, violations);
-        let duration = trip.arrival - trip.departure;
-        if is_over(trip.load, fleet.capacity) {
-            let (load, capacity) = (trip.load, fleet.capacity);
-            violations.push(RoundViolation::OverCapacity { route, trip: index, load, capacity });
-        }
-        if is_over(duration, fleet.max_trip_duration) {
-            let max_duration = fleet.max_trip_duration;
-            violations.push(RoundViolation::TooSlow { route, trip: index, duration, max_duration });
-        }
-        ready = trip.arrival + fleet.turnaround.unwrap_or(0.0);
-        flown.push(trip);
+    for (index, trip) in trips.iter().enumerate() {
+        violations.extend(trip_violations(round, route, index, trip));
     }
-    let arrival = flown[flown.len() - 1].arrival;
-    if is_over(arrival, fleet.shift.latest) {
-        violations.push(RoundViolation::ShiftOver { route, by: arrival - fleet.shift.latest });
+    if let Some(by) = trips.last().map(|trip| trip.arrival - fleet.shift.latest)
+        && is_over(by + fleet.shift.latest, fleet.shift.latest)
+    {
+        violations.push(RoundViolation::ShiftOver { route, by });
     }
-    flown
+    violations
+}
+
+fn trip_violations(round: &Round, route: usize, index: usize, trip: &Trip) -> Vec<RoundViolation> {
+    let (fleet, drone) = (round.fleet(), round.fleet().drone(route));
+    let (load, capacity) = (trip.load, fleet.capacity);
+    let (length, max_length) = (trip.length, drone.max_length);
+    let (duration, max_duration) = (trip.arrival - trip.departure, drone.max_duration);
+    let (energy, usable_energy) = (trip.energy, drone.energy.usable_energy);
+    let mut violations = Vec::new();
+    if is_over(load, capacity) {
+        violations.push(RoundViolation::OverCapacity { route, trip: index, load, capacity });
+    }
+    if is_over(length, max_length) {
+        violations.push(RoundViolation::TooLong { route, trip: index, length, max_length });
+    }
+    if is_over(duration, max_duration) {
+        violations.push(RoundViolation::TooSlow { route, trip: index, duration, max_duration });
+    }
+    if is_over(energy, usable_energy) {
+        violations.push(RoundViolation::TooMuchEnergy { route, trip: index, energy, usable_energy });
+    } else if let Some(stop) =
+        trip.stops.iter().find(|stop| is_over(stop.energy_used + stop.energy_home, usable_energy))
+    {
+        let by = stop.energy_used + stop.energy_home - usable_energy;
+        violations.push(RoundViolation::NoWayHome { route, trip: index, visit: stop.visit, by });
+    }
+    violations
 }
 
 fn is_over(value: f64, limit: f64) -> bool {
     value > limit + TOLERANCE * limit.abs().max(1.0)
 }
 
-/// The trip that lands first; if that takes longer than a trip may, the first that does not, because a take-off that waits for
-/// later windows may spend less time in the air.
-fn fly_trip(round: &Round, visits: &[usize], ready: f64, violations: &mut Vec<RoundViolation>) -> Trip {
+/// The trip that lands first, and what comes too late in it; if that takes longer or more energy than a trip may, the first that
+/// does not, because a take-off that waits for later windows may spend less time in the air.
+fn fly_trip(round: &Round, drone: &VehicleType, visits: &[usize], ready: f64) -> (Trip, Vec<RoundViolation>) {
     let take_off = visits.iter().map(|&visit| round.visits()[visit].release).fold(ready, f64::max);
-    let (trip, late) = fly_from(round, visits, take_off);
-    let is_short = |trip: &Trip| !is_over(trip.arrival - trip.departure, round.fleet().max_trip_duration);
+    let (trip, late) = fly_from(round, drone, visits, take_off);
+    let is_short = |trip: &Trip| {
+        !is_over(trip.arrival - trip.departure, drone.max_duration) && !is_over(trip.energy, drone.energy.usable_energy)
+    };
     if late.is_empty() && !is_short(&trip) {
-        let mut later = later_departures(round, visits, take_off).into_iter().map(|time| fly_from(round, visits, time));
+        let departures = later_departures(round, drone, visits, take_off);
+        let mut later = departures.into_iter().map(|time| fly_from(round, drone, visits, time));
         if let Some((shorter, _)) = later.find(|(trip, late)| late.is_empty() && is_short(trip)) {
-            return shorter;
+            return (shorter, Vec::new());
         }
     }
-    violations.extend(late);
-    trip
+    (trip, late)
 }
 
 /// Take-offs by which some service begins when its window begins or ends, in rising order: between them nothing is gained.
-fn later_departures(round: &Round, visits: &[usize], take_off: f64) -> Vec<f64> {
-    let (mut position, mut way) = (round.depot(), 0.0);
+fn later_departures(round: &Round, drone: &VehicleType, visits: &[usize], take_off: f64) -> Vec<f64> {
+    let (mut position, mut kind, mut way) = (round.depot(), LegKind::First, 0.0);
     let mut departures = Vec::new();
     for &index in visits {
-        let visit = &round.visits()[index];
-        way += round.leg(position, visit.position);
-        let times = visit.windows.iter().flat_map(|window| [window.earliest - way, window.latest - way]);
+        let RoundVisit { visit, windows, .. } = &round.visits()[index];
+        way += round.leg(position, visit.position, kind, drone).duration;
+        let times = windows.iter().flat_map(|window| [window.earliest - way, window.latest - way]);
         departures.extend(times.filter(|&time| time > take_off && time.is_finite()));
-        (position, way) = (visit.position, way + visit.service_duration);
+        (position, kind, way) = (visit.position, LegKind::Between, way + visit.service_duration);
     }
     departures.sort_by(f64::total_cmp);
     departures
 }
 
 /// A trip that takes off then or later and lands as early as it can, and what comes too late in it.
-fn fly_from(round: &Round, visits: &[usize], take_off: f64) -> (Trip, Vec<RoundViolation>) {
-    let (mut position, mut clock) = (round.depot(), take_off);
+fn fly_from(round: &Round, drone: &VehicleType, visits: &[usize], take_off: f64) -> (Trip, Vec<RoundViolation>) {
+    let (mut position, mut kind, mut clock) = (round.depot(), LegKind::First, take_off);
     let (mut length, mut load) = (0.0, 0.0);
     let (mut stops, mut late) = (Vec::with_capacity(visits.len()), Vec::new());
     for &index in visits {
-        let visit = &round.visits()[index];
-        let leg = round.leg(position, visit.position);
-        let arrival = clock + leg;
-        let start = match first_start(visit, arrival) {
+        let round_visit = &round.visits()[index];
+        let visit = round_visit.visit;
+        let leg = round.leg(position, visit.position, kind, drone);
+        let arrival = clock + leg.duration;
+        let start = match first_start(round_visit, arrival) {
             Ok(start) => start,
             Err(by) => {
                 late.push(RoundViolation::Late { visit: index, by });
@@ -132,13 +184,37 @@ fn fly_from(round: &Round, visits: &[usize], take_off: f64) -> (Trip, Vec<RoundV
             }
         };
         clock = start + visit.service_duration;
-        (position, length, load) = (visit.position, length + leg, load + visit.load);
-        stops.push(RoundStop { visit: index, arrival, start, departure: clock });
+        (position, kind) = (visit.position, LegKind::Between);
+        (length, load) = (length + leg.length, load + round_visit.load);
+        stops.push(RoundStop {
+            visit: index,
+            arrival,
+            start,
+            departure: clock,
+            leg,
+            energy_used: 0.0,
+            energy_home: 0.0,
+        });
     }
-    let last_leg = round.leg(position, round.depot());
-    let arrival = clock + last_leg;
+    let last_leg = round.leg(position, round.depot(), LegKind::Last, drone);
+    let arrival = clock + last_leg.duration;
     let departure = waits_at_depot(round, &mut stops, take_off);
-    (Trip { stops, departure, arrival, length: length + last_leg, load }, late)
+    let energy = use_energy(round, drone, &mut stops) + last_leg.energy;
+    let trip =
+        Trip { stops, departure, arrival, last_leg, ready: arrival, length: length + last_leg.length, energy, load };
+    (trip, late)
+}
+
+/// Fills in what the trip has taken from its battery at every stop; returns what it has at the last.
+fn use_energy(round: &Round, drone: &VehicleType, stops: &mut [RoundStop]) -> f64 {
+    let mut used = 0.0;
+    for stop in stops {
+        let visit = round.visits()[stop.visit].visit;
+        used += stop.leg.energy + (stop.start - stop.arrival) * drone.energy.leg_stop_power + visit.service_energy;
+        stop.energy_used = used;
+        stop.energy_home = round.leg(visit.position, round.depot(), LegKind::Last, drone).energy;
+    }
+    used
 }
 
 /// When the service of a drone that arrives then begins; or by how much it is too late.
@@ -198,7 +274,8 @@ fn count_violations(round: &Round, routes: &[Vec<Trip>]) -> Vec<RoundViolation> 
             _ => violations.push(RoundViolation::Repeated { visit, num_times }),
         }
     }
-    let (num_routes, num_drones) = (routes.len(), round.fleet().num_drones);
+    let num_routes = routes.iter().rposition(|trips| !trips.is_empty()).map_or(0, |last| last + 1);
+    let num_drones = round.fleet().vehicle_type.num_available;
     if num_routes > num_drones {
         violations.push(RoundViolation::TooManyRoutes { num_routes, num_drones });
     }

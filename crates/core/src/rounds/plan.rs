@@ -1,5 +1,7 @@
 //! The immutable result of planning a round: routes of trips, their schedule and what is wrong with them.
 
+use crate::travel::Leg;
+
 /// When one visit happens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundStop {
@@ -11,6 +13,12 @@ pub struct RoundStop {
     pub start: f64,
     /// When the drone leaves, in seconds.
     pub departure: f64,
+    /// The leg by which it came.
+    pub leg: Leg,
+    /// Joules that the trip has taken when the drone leaves: legs, waits in the air, services.
+    pub energy_used: f64,
+    /// Joules of the way home from here, with its landing.
+    pub energy_home: f64,
 }
 
 /// What a drone flies between two stays at the depot.
@@ -22,8 +30,14 @@ pub struct Trip {
     pub departure: f64,
     /// When it lands, in seconds: as early as the trips before it allow.
     pub arrival: f64,
+    /// The way home.
+    pub last_leg: Leg,
+    /// When the drone is ready for its next trip, in seconds; the landing, if there is none.
+    pub ready: f64,
     /// Length from depot to depot.
     pub length: f64,
+    /// Joules from take-off to landing.
+    pub energy: f64,
     /// What its visits take of the capacity.
     pub load: f64,
 }
@@ -93,6 +107,42 @@ pub enum RoundViolation {
         /// The limit in seconds.
         max_duration: f64,
     },
+    /// A trip that is longer than it may be.
+    #[error("trip {trip} of route {route} is {length} long, the limit is {max_length}")]
+    TooLong {
+        /// Index of the route.
+        route: usize,
+        /// Index of the trip in its route.
+        trip: usize,
+        /// Its length.
+        length: f64,
+        /// The limit.
+        max_length: f64,
+    },
+    /// A trip that takes more energy than a battery may give.
+    #[error("trip {trip} of route {route} takes {energy} J, a battery may give {usable_energy} J")]
+    TooMuchEnergy {
+        /// Index of the route.
+        route: usize,
+        /// Index of the trip in its route.
+        trip: usize,
+        /// Joules that it takes.
+        energy: f64,
+        /// Joules that it may take.
+        usable_energy: f64,
+    },
+    /// A visit after which the way home takes more than the battery may still give, though the trip as a whole does not.
+    #[error("from visit {visit} in trip {trip} of route {route} the way home lacks {by} J")]
+    NoWayHome {
+        /// Index of the route.
+        route: usize,
+        /// Index of the trip in its route.
+        trip: usize,
+        /// Index of the visit.
+        visit: usize,
+        /// Joules that are missing.
+        by: f64,
+    },
     /// A drone that comes home after the end of the shift.
     #[error("route {route} ends {by} s after the shift")]
     ShiftOver {
@@ -106,7 +156,7 @@ pub enum RoundViolation {
 /// Routes of trips with their schedule, as [`crate::rounds::evaluate_round`] recomputes them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundPlan {
-    /// The trips of each drone that flies, in the order given.
+    /// The trips of each drone; none for one that does not fly.
     pub routes: Vec<Vec<Trip>>,
     /// What is wrong with it; empty for a feasible plan.
     pub violations: Vec<RoundViolation>,
@@ -130,5 +180,11 @@ impl RoundPlan {
     #[must_use]
     pub fn makespan(&self) -> f64 {
         self.routes.iter().flatten().map(|trip| trip.arrival).fold(0.0, f64::max)
+    }
+
+    /// Joules of all trips.
+    #[must_use]
+    pub fn total_energy(&self) -> f64 {
+        self.routes.iter().flatten().map(|trip| trip.energy).sum::<f64>() + 0.0
     }
 }

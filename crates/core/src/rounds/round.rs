@@ -2,6 +2,8 @@
 
 use crate::error::{Faults, InvalidInput};
 use crate::geometry::Point;
+use crate::problem::{Depot, Layer, Problem, VehicleType, Visit};
+use crate::travel::{Air, Leg, LegKind, leg_duration, leg_energy, leg_length};
 
 /// When something may begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,16 +22,24 @@ impl TimeWindow {
 /// The task of serving one place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundVisit {
-    /// Where it is.
-    pub position: Point,
-    /// Time on station, in seconds.
-    pub service_duration: f64,
+    /// Where it is, how long it takes, and what it takes from the battery.
+    pub visit: Visit,
     /// When the service may begin: in one of these; at any time if there are none.
     pub windows: Vec<TimeWindow>,
     /// No trip with this visit takes off before, in seconds.
     pub release: f64,
     /// What the visit takes of a trip's capacity.
     pub load: f64,
+    /// What it is worth beside others where not all can be made; positive.
+    pub priority: f64,
+}
+
+impl RoundVisit {
+    /// A visit at any time, without load.
+    #[must_use]
+    pub const fn at_any_time(visit: Visit) -> Self {
+        Self { visit, windows: Vec::new(), release: 0.0, load: 0.0, priority: 1.0 }
+    }
 }
 
 /// What a leg of length d counts, as length and as duration.
@@ -42,19 +52,58 @@ pub enum Rounding {
     Dimacs,
 }
 
-/// The drones, all alike: at unit speed from one depot.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The drones, all alike, from one depot.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fleet {
-    /// How many there are.
-    pub num_drones: usize,
+    /// How many there are and how they fly; the limits of energy, length and time are those of one trip.
+    pub vehicle_type: VehicleType,
+    /// How drone i takes off and comes home, in place of what its type says; drones beyond the last layer fly in the last. May
+    /// be empty.
+    pub layers: Vec<Layer>,
+    /// The air they fly through.
+    pub air: Air,
     /// The load that one trip may take.
     pub capacity: f64,
-    /// Longest time of one trip, in seconds.
-    pub max_trip_duration: f64,
-    /// When drones may take off first, and must be back for good.
+    /// When the first drone may take off, and when all must be back for good.
     pub shift: TimeWindow,
+    /// Seconds by which each drone may take off after the one before it.
+    pub takeoff_interval: f64,
     /// Seconds at the depot between two trips of a drone; `None` if each flies one trip.
     pub turnaround: Option<f64>,
+    /// How many drones the depot can turn round at once; the others wait, in the order of their landings.
+    pub num_pads: usize,
+}
+
+impl Fleet {
+    /// Drones that fly one trip each, at any time, in calm air.
+    #[must_use]
+    pub const fn of(vehicle_type: VehicleType) -> Self {
+        Self {
+            vehicle_type,
+            layers: Vec::new(),
+            air: Air::CALM,
+            capacity: f64::INFINITY,
+            shift: TimeWindow::ANY,
+            takeoff_interval: 0.0,
+            turnaround: None,
+            num_pads: usize::MAX,
+        }
+    }
+
+    /// How drone `index` flies.
+    #[must_use]
+    pub fn drone(&self, index: usize) -> VehicleType {
+        match self.layers.get(index).or(self.layers.last()) {
+            Some(&layer) => self.vehicle_type.in_layer(layer),
+            None => self.vehicle_type,
+        }
+    }
+
+    /// When drone `index` may take off first.
+    #[must_use]
+    pub fn first_takeoff(&self, index: usize) -> f64 {
+        self.shift.earliest + index as f64 * self.takeoff_interval
+    }
 }
 
 /// A depot, visits and drones: validated, immutable.
@@ -66,20 +115,22 @@ pub struct Round {
     rounding: Rounding,
 }
 
-/// Beyond this a squared distance loses the digits that distinguish two places.
+/// Times, loads and priorities of more are no sensible ones.
 const MAX_NUMBER: f64 = 1e9;
 
 impl Round {
     /// A round of at least one visit and one drone.
     ///
     /// # Errors
-    /// [`InvalidInput`] with every fault: no visit, no drone, a number out of its range, a window that ends before it begins,
-    /// a load that no trip may take.
+    /// [`InvalidInput`] with every fault: what [`Problem::new`] finds, a window that ends before it begins, a load that no trip
+    /// may take, a wind that drones make no way against.
     pub fn new(depot: Point, visits: Vec<RoundVisit>, fleet: Fleet, rounding: Rounding) -> Result<Self, InvalidInput> {
         let mut faults = Faults::default();
-        check_position(&mut faults, "depot", depot);
-        if visits.is_empty() {
-            faults.add("visits", "there is nothing to visit", "give at least one visit");
+        let bare = visits.iter().map(|visit| visit.visit).collect();
+        let problem = Problem::new(Depot { position: depot }, bare, fleet.vehicle_type)
+            .and_then(|problem| problem.with_layers(fleet.layers.clone()));
+        if let Err(error) = problem {
+            faults.extend(error);
         }
         check_fleet(&mut faults, &fleet);
         for (index, visit) in visits.iter().enumerate() {
@@ -106,23 +157,24 @@ impl Round {
         &self.fleet
     }
 
-    /// Length of the leg between two places, which is its duration too.
+    /// The leg between two places, as a drone of this kind flies it.
+    ///
+    /// # Panics
+    /// Never: a round whose drones make no way against the wind is no valid one.
     #[must_use]
-    pub fn leg(&self, from: Point, to: Point) -> f64 {
-        let length = from.distance(to);
+    pub fn leg(&self, from: Point, to: Point, kind: LegKind, drone: &VehicleType) -> Leg {
         match self.rounding {
-            Rounding::Exact => length,
-            // Whole tenths are divided last, so that the nearest number to each is taken, as a reader of decimals does.
-            Rounding::Dimacs => (10.0 * length).floor() / 10.0,
-        }
-    }
-}
-
-fn check_position(faults: &mut Faults, path: &str, position: Point) {
-    for (axis, value) in [("x", position.x), ("y", position.y)] {
-        if !(-MAX_NUMBER..=MAX_NUMBER).contains(&value) {
-            let message = format!("the coordinate is {value:?}");
-            faults.add(format!("{path}.{axis}"), message, "give a finite number of at most 1e9");
+            Rounding::Exact => Leg::in_air(from, to, kind, drone, &self.fleet.air).unwrap_or(Leg {
+                length: leg_length(from, to),
+                duration: f64::INFINITY,
+                energy: f64::INFINITY,
+            }),
+            Rounding::Dimacs => {
+                // Whole tenths are divided last, so that the nearest number to each is taken, as a reader of decimals does.
+                let length = (10.0 * leg_length(from, to)).floor() / 10.0;
+                let (duration, energy) = (leg_duration(length, kind, drone), leg_energy(length, kind, drone));
+                Leg { length, duration, energy }
+            }
         }
     }
 }
@@ -148,22 +200,41 @@ fn check_window(faults: &mut Faults, path: &str, window: TimeWindow) {
 }
 
 fn check_fleet(faults: &mut Faults, fleet: &Fleet) {
-    if fleet.num_drones == 0 {
-        faults.add("fleet.num_drones", "there is no drone", "give at least one drone");
-    }
     check_limit(faults, "fleet.capacity", fleet.capacity);
-    check_limit(faults, "fleet.max_trip_duration", fleet.max_trip_duration);
     check_window(faults, "fleet.shift", fleet.shift);
+    check_number(faults, "fleet.takeoff_interval".to_owned(), fleet.takeoff_interval);
     if let Some(turnaround) = fleet.turnaround {
         check_number(faults, "fleet.turnaround".to_owned(), turnaround);
+    }
+    if fleet.num_pads == 0 {
+        faults.add("fleet.num_pads", "there is no place to land", "give at least one");
+    }
+    check_air(faults, &fleet.air);
+}
+
+fn check_air(faults: &mut Faults, air: &Air) {
+    check_number(faults, "fleet.air.drag_power".to_owned(), air.drag_power);
+    check_limit(faults, "fleet.air.max_airspeed", air.max_airspeed);
+    let wind_speed = air.wind_speed();
+    if !wind_speed.is_finite() {
+        faults.add("fleet.air.wind", "the wind is no finite velocity", "give its speed and where it blows from");
+    } else if wind_speed >= air.max_airspeed {
+        let message = format!(
+            "the wind blows with {wind_speed:.1} m/s, and the drones fly at most {:.1} m/s through the air: they would not come \
+             back against it",
+            air.max_airspeed
+        );
+        faults.add("fleet.air.wind", message, "wait for less wind, or give drones that fly faster");
     }
 }
 
 fn check_visit(faults: &mut Faults, path: &str, visit: &RoundVisit, fleet: &Fleet) {
-    check_position(faults, &format!("{path}.position"), visit.position);
-    check_number(faults, format!("{path}.service_duration"), visit.service_duration);
     check_number(faults, format!("{path}.release"), visit.release);
     check_number(faults, format!("{path}.load"), visit.load);
+    check_limit(faults, &format!("{path}.priority"), visit.priority);
+    if visit.priority > MAX_NUMBER {
+        faults.add(format!("{path}.priority"), format!("the priority is {:?}", visit.priority), "give at most 1e9");
+    }
     for (index, &window) in visit.windows.iter().enumerate() {
         check_window(faults, &format!("{path}.windows[{index}]"), window);
     }
@@ -176,18 +247,15 @@ fn check_visit(faults: &mut Faults, path: &str, visit: &RoundVisit, fleet: &Flee
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::WayHome;
 
     fn visit(x: f64, y: f64) -> RoundVisit {
-        RoundVisit { position: Point::new(x, y), service_duration: 1.0, windows: Vec::new(), release: 0.0, load: 1.0 }
+        RoundVisit { load: 1.0, ..RoundVisit::at_any_time(Visit::at(Point::new(x, y))) }
     }
 
-    const FLEET: Fleet = Fleet {
-        num_drones: 1,
-        capacity: 2.0,
-        max_trip_duration: f64::INFINITY,
-        shift: TimeWindow::ANY,
-        turnaround: None,
-    };
+    fn fleet(num_drones: usize) -> Fleet {
+        Fleet { capacity: 2.0, ..Fleet::of(VehicleType::unlimited(num_drones)) }
+    }
 
     #[test]
     fn every_fault_is_told_at_once() {
@@ -195,30 +263,62 @@ mod tests {
             windows: vec![TimeWindow::ANY, TimeWindow { earliest: 5.0, latest: 4.0 }],
             load: 3.0,
             release: -1.0,
+            priority: 0.0,
             ..visit(f64::NAN, 0.0)
         };
-        let fleet = Fleet { num_drones: 0, max_trip_duration: f64::NAN, turnaround: Some(-1.0), ..FLEET };
+        let mut fleet = Fleet { turnaround: Some(-1.0), takeoff_interval: f64::NAN, num_pads: 0, ..fleet(0) };
+        fleet.vehicle_type.max_duration = f64::NAN;
+        fleet.air = Air { wind: Point::new(3.0, 4.0), max_airspeed: 5.0, drag_power: -1.0 };
         let error = Round::new(Point::new(2e9, 0.0), vec![visit(0.0, 0.0), wrong], fleet, Rounding::Exact).unwrap_err();
         let paths: Vec<&str> = error.faults.iter().map(|fault| fault.path.as_str()).collect();
         assert_eq!(
             paths,
             [
-                "depot.x",
-                "fleet.num_drones",
-                "fleet.max_trip_duration",
-                "fleet.turnaround",
+                "depot.position.x",
                 "visits[1].position.x",
+                "vehicle_type.num_available",
+                "vehicle_type.max_duration",
+                "fleet.takeoff_interval",
+                "fleet.turnaround",
+                "fleet.num_pads",
+                "fleet.air.drag_power",
+                "fleet.air.wind",
                 "visits[1].release",
+                "visits[1].load",
+                "visits[1].priority",
                 "visits[1].windows[1]",
                 "visits[1].load",
             ]
         );
+        assert!(error.to_string().contains("blows with 5.0 m/s"));
     }
 
     #[test]
     fn legs_are_cut_to_tenths_where_the_convention_says_so() {
-        let round = |rounding| Round::new(Point::new(0.0, 0.0), vec![visit(1.0, 1.0)], FLEET, rounding).unwrap();
-        let leg = |rounding| round(rounding).leg(Point::new(0.0, 0.0), Point::new(1.0, 1.0));
+        let leg = |rounding| {
+            let round = Round::new(Point::new(0.0, 0.0), vec![visit(1.0, 1.0)], fleet(1), rounding).unwrap();
+            round.leg(Point::new(0.0, 0.0), Point::new(1.0, 1.0), LegKind::Between, &round.fleet().drone(0)).duration
+        };
         assert_eq!((leg(Rounding::Exact), leg(Rounding::Dimacs)), (2.0_f64.sqrt(), 1.4));
+    }
+
+    #[test]
+    fn drones_take_off_one_after_the_other_each_in_its_layer() {
+        let way_home = Some(WayHome { speed: 10.0, fixed_duration: 40.0 });
+        let layer = |takeoff_duration| Layer {
+            takeoff_duration,
+            way_home_duration: 44.0,
+            takeoff_energy: 0.0,
+            way_home_energy: 0.0,
+        };
+        let fleet = Fleet {
+            layers: vec![layer(9.0), layer(11.0)],
+            takeoff_interval: 20.0,
+            shift: TimeWindow { earliest: 5.0, latest: 1e4 },
+            ..Fleet::of(VehicleType { way_home, ..VehicleType::unlimited(3) })
+        };
+        assert_eq!([0, 1, 2].map(|drone| fleet.first_takeoff(drone)), [5.0, 25.0, 45.0]);
+        assert_eq!([0, 1, 2].map(|drone| fleet.drone(drone).takeoff_duration), [9.0, 11.0, 11.0]);
+        assert_eq!(fleet.drone(2).way_home, Some(WayHome { speed: 10.0, fixed_duration: 44.0 }));
     }
 }

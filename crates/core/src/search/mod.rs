@@ -35,8 +35,8 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
     plain::solve(problem, options)
 }
 
-/// Plans trips for `round` so that their total length is small. One thread; goal, slack and start of the options are without
-/// effect.
+/// Plans trips for `round` so that the last drone lands early, or what all fly is short, as the goal says; the visits of most
+/// priority come first where not all can be made. One thread; slack and start of the options are without effect.
 #[must_use]
 pub fn solve_round(round: &Round, options: &Options<'_>) -> RoundOutcome {
     timed::solve(round, options)

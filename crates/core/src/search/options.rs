@@ -63,6 +63,8 @@ pub struct Outcome {
 pub struct RoundOutcome {
     /// For each drone that flies its trips, each the visits in flying order; no visit twice. What no trip could make is left out.
     pub routes: Vec<Vec<Vec<usize>>>,
+    /// When the last drone lands, in seconds, as the search reckons: its judge may find earlier windows.
+    pub makespan: f64,
     /// Steps made.
     pub num_iterations: u64,
 }

@@ -21,11 +21,15 @@
 //! 1. `segment`: the times of a piece of a trip, joined in constant time.
 //! 2. `network`: what is known about places: legs, services, windows, nearest neighbours.
 //! 3. `state`: a plan under change: routes of trips.
-//! 4. `ruin`: takes strings of neighbouring visits out.
-//! 5. `recreate`: puts them back.
-//! 6. `run`: one search from start to end.
+//! 4. `objective`: what is minimised.
+//! 5. `ruin`: takes strings of neighbouring visits out.
+//! 6. `recreate`: puts them back.
+//! 7. `exchange`: moves whole trips between drones.
+//! 8. `run`: one search from start to end.
 
+mod exchange;
 mod network;
+mod objective;
 mod recreate;
 mod ruin;
 mod run;

@@ -1,12 +1,15 @@
-//! Puts the visits of the bank back, each where it adds the least length.
+//! Puts the visits of the bank back, each where it costs least.
 //!
 //! Source: Christiaens and Vanden Berghe 2020, section 5.2, with the orders of its section 6.4 for time windows. Changed: places
 //! are tried beside near neighbours, at both ends of some trips, and as a trip of its own; one in a hundred is passed over,
-//! decided for a place and a step. O(visits of the bank x (neighbours + trips)).
+//! decided for a place and a step. Where it counts when the last drone lands, a place also costs by how much more than its own
+//! time it delays its drone, and tenfold or a thousandfold what it delays it beyond the best known plan, as the lot falls. A
+//! step ends as soon as it is sure to be rejected. O(visits of the bank x (neighbours + trips)).
 
-use super::network::Network;
-use super::segment::{ROUNDING, Segment};
-use super::state::{ABSENT, OutOfTime, Place, Route, State, Touched};
+use super::network::{Neighbour, Network};
+use super::objective::Objective;
+use super::segment::Segment;
+use super::state::{ABSENT, OverLimit, Place, Route, State, Touched, is_flyable};
 use crate::random::Random;
 
 /// Share of places that are passed over, of 2⁶⁴.
@@ -15,6 +18,8 @@ const PLACE_BLINK: u64 = u64::MAX / 100;
 const MAX_ENDS: usize = 12;
 /// Visits of the bank that are tried in one step besides those just taken out; a random run of them.
 const MAX_BANK: usize = 20;
+/// What a second beyond the target costs, beside the added time: the one or the other for every insertion.
+const OVERFLOW_PRICES: [f64; 2] = [1000.0, 10.0];
 
 /// By what the bank is ordered, with how often.
 const ORDERS: [(Order, usize); 7] = [
@@ -59,18 +64,25 @@ pub(super) struct Recreate {
 
 impl Recreate {
     /// Puts back the last `num_new` visits of the bank, and some of the others, where they have a place; the rest stays there.
+    /// Returns false, with some still in the bank, once the plan is sure to cost more than `threshold`.
+    #[allow(clippy::too_many_arguments)]
     pub fn insert(
         &mut self,
         network: &Network<'_>,
         state: &mut State,
         num_new: usize,
+        objective: &Objective,
+        threshold: f64,
         random: &mut Random,
         touched: &mut Touched,
-    ) -> Result<(), OutOfTime> {
+    ) -> Result<bool, OverLimit> {
         self.order(network, state, num_new, random);
         for index in 0..self.queue.len() {
             let visit = self.queue[index].1;
-            let mut best = Cheapest { network, state, visit, salt: random.bits(), price: f64::INFINITY, target: None };
+            let salt = random.bits();
+            let overflow_price = OVERFLOW_PRICES[(salt >> 63) as usize];
+            let mut best =
+                Cheapest { network, state, objective, visit, salt, overflow_price, price: f64::INFINITY, target: None };
             best.look(random);
             match best.target {
                 Some(Target::In(place)) => state.put_in(network, visit, place, touched)?,
@@ -79,8 +91,11 @@ impl Recreate {
                 }
                 None => {}
             }
+            if objective.least(state) > threshold {
+                return Ok(false);
+            }
         }
-        Ok(())
+        Ok(true)
     }
 
     fn order(&mut self, network: &Network<'_>, state: &State, num_new: usize, random: &mut Random) {
@@ -103,8 +118,8 @@ impl Recreate {
             let key = match order {
                 Order::Random => random.uniform(),
                 Order::Load => -network.load(visit),
-                Order::Far => -network.leg(depot, visit),
-                Order::Near => network.leg(depot, visit),
+                Order::Far => -network.duration(depot, visit),
+                Order::Near => network.duration(depot, visit),
                 Order::Narrow => windows.iter().map(|window| window.latest - window.earliest).sum(),
                 Order::Early => windows[0].earliest,
                 Order::Late => -windows[windows.len() - 1].latest,
@@ -119,19 +134,31 @@ impl Recreate {
 struct Cheapest<'a> {
     network: &'a Network<'a>,
     state: &'a State,
+    objective: &'a Objective,
     visit: u32,
     salt: u64,
+    overflow_price: f64,
     price: f64,
     target: Option<Target>,
 }
 
 impl Cheapest<'_> {
     fn look(&mut self, random: &mut Random) {
-        for &neighbour in self.network.neighbours(self.visit) {
+        for &Neighbour { visit: neighbour, leg_to, leg_from } in self.network.neighbours(self.visit) {
             let Place { trip, index, .. } = self.state.places[neighbour as usize];
-            if trip != ABSENT {
-                self.consider(trip, index);
-                self.consider(trip, index + 1);
+            if trip == ABSENT {
+                continue;
+            }
+            let legs = &self.state.trips[trip as usize].legs;
+            let (leg_before, leg_after) = (legs[index as usize], legs[index as usize + 1]);
+            // A place whose other end is nearer was tried from there, so the other leg is about as long; in time nearer ends may
+            // be no neighbours.
+            let is_pruned = !self.network.has_windows
+                && 2.0 * leg_to.min(leg_from) - if leg_before > leg_after { leg_before } else { leg_after }
+                    >= self.price;
+            if !is_pruned {
+                self.consider(trip, index, None, Some(leg_to));
+                self.consider(trip, index + 1, Some(leg_from), None);
             }
         }
         let num_slots = self.state.trips.len();
@@ -141,8 +168,8 @@ impl Cheapest<'_> {
                 let trip = (begin + offset) % num_slots;
                 let size = self.state.trips[trip].visits.len() as u32;
                 if size > 0 {
-                    self.consider(trip as u32, 0);
-                    self.consider(trip as u32, size);
+                    self.consider(trip as u32, 0, None, None);
+                    self.consider(trip as u32, size, None, None);
                 }
             }
         }
@@ -154,86 +181,168 @@ impl Cheapest<'_> {
         (self.salt ^ place).wrapping_mul(0x9e37_79b9_7f4a_7c15) < PLACE_BLINK
     }
 
-    /// The place before the visit that is at `index` of a trip, or behind its last.
-    fn consider(&mut self, trip: u32, index: u32) {
+    /// The place before the visit that is at `index` of a trip, or behind its last; the legs are told where they are known.
+    fn consider(&mut self, trip: u32, index: u32, leg_in: Option<f64>, leg_out: Option<f64>) {
         let Self { network, state, visit, .. } = *self;
         let slot = &state.trips[trip as usize];
         let (at, depot) = (index as usize, network.depot());
         let previous = if at == 0 { depot } else { slot.visits[at - 1] };
         let next = slot.visits.get(at).copied().unwrap_or(depot);
-        let (leg_in, leg_out) = (network.leg(previous, visit), network.leg(visit, next));
-        let added = leg_in + leg_out - network.leg(previous, next);
+        // The rest of the price is never negative.
+        let known = leg_in.or(leg_out).unwrap_or(0.0) - slot.legs[at];
+        if known >= self.price {
+            return;
+        }
+        let leg_in = leg_in.unwrap_or_else(|| network.duration(previous, visit));
+        let leg_out = leg_out.unwrap_or_else(|| network.duration(visit, next));
+        let added = leg_in + leg_out - slot.legs[at];
         if added >= self.price || slot.load + network.load(visit) > network.round.fleet().capacity {
             return;
         }
-        let before = if at == 0 { Segment::NOTHING } else { slot.before[at - 1] };
-        let behind = slot.behind.get(at).copied().unwrap_or(Segment::NOTHING);
+        let busy = slot.busy + added + network.service_duration(visit);
         let route = &state.routes[slot.route as usize];
-        let Some(number) = route.trips.iter().position(|&other| other == trip) else { return };
+        let (ready, after) = (route.ready[slot.number as usize], route.after[slot.number as usize]);
         let release = slot.release.max(network.release(visit));
-        for window in 0..network.windows(visit).len() as u8 {
-            let own = network.segment(visit, window);
-            let whole = before
-                .join(leg_in, own)
-                .and_then(|head| head.join(leg_out, behind))
-                .and_then(|whole| whole.not_before(release));
-            if self.is_in_time(whole, route.ready[number], route.after[number]) && !self.passes_over(trip, index) {
-                self.price = added;
+        let is_timed = slot.num_timed > 0 || network.is_timed(visit);
+        for window in self.windows_in_turn() {
+            let whole = if is_timed {
+                let ends = network.ends[slot.route as usize];
+                let (before, behind) = slot.parts(at, ends.out_duration, ends.home_duration);
+                let head = before.join(leg_in, network.segment(visit, window));
+                head.and_then(|head| head.join(leg_out, behind))
+            } else {
+                Some(Segment::lasting(busy))
+            };
+            let Some(whole) = whole.and_then(|whole| whole.not_before(release)) else { continue };
+            let Some(finish) = self.finish(whole, ready, after) else { continue };
+            let price = added + self.delay_price(finish, route.finish, busy - slot.busy);
+            if price < self.price
+                && !self.passes_over(trip, index)
+                && self.is_within_limits(trip, previous, next, whole, busy)
+            {
+                self.price = price;
                 self.target = Some(Target::In(Place { trip, index, window }));
-                return;
-            }
-        }
-    }
-
-    /// Whether a trip keeps its longest time, and what follows it its times.
-    fn is_in_time(&self, whole: Option<Segment>, ready: f64, after: Segment) -> bool {
-        let max_duration = self.network.round.fleet().max_trip_duration;
-        whole
-            .filter(|whole| whole.duration <= max_duration + ROUNDING)
-            .and_then(|whole| whole.end(ready))
-            .is_some_and(|end| after.end(end).is_some())
-    }
-
-    /// Trips of its own: before, between and behind those of each drone, or as the first of one that does not fly yet.
-    fn consider_new_trips(&mut self) {
-        let Self { network, state, visit, .. } = *self;
-        let depot = network.depot();
-        let (leg_out, leg_home) = (network.leg(depot, visit), network.leg(visit, depot));
-        let added = leg_out + leg_home;
-        if added >= self.price {
-            return;
-        }
-        let fleet = network.round.fleet();
-        let mut is_unused_tried = false;
-        for (index, route) in state.routes.iter().enumerate() {
-            let has_room = route.trips.is_empty() || fleet.turnaround.is_some();
-            if !has_room || (route.trips.is_empty() && is_unused_tried) {
-                continue;
-            }
-            is_unused_tried |= route.trips.is_empty();
-            for number in 0..=route.trips.len() {
-                if let Some(window) = self.window_of_trip(route, number, leg_out, leg_home) {
-                    self.price = added;
-                    self.target = Some(Target::New(window, index as u32, number));
+                if !self.objective.is_longest {
                     return;
                 }
             }
         }
     }
 
-    /// The first window in which a trip of this visit alone can be flown as number `number` of a route.
-    fn window_of_trip(&self, route: &Route, number: usize, leg_out: f64, leg_home: f64) -> Option<u8> {
+    /// The windows of the visit, from a random one on: the first that fits may be in the way of others.
+    fn windows_in_turn(&self) -> impl Iterator<Item = u8> + use<> {
+        let num_windows = self.network.windows(self.visit).len() as u64;
+        let first = if num_windows > 1 { self.salt % num_windows } else { 0 };
+        (0..num_windows).map(move |window| ((first + window) % num_windows) as u8)
+    }
+
+    /// Whether a trip with the visit between two others, and with these times, is within the limits of a trip.
+    #[inline]
+    fn is_within_limits(&self, trip: u32, previous: u32, next: u32, whole: Segment, busy: f64) -> bool {
+        let Self { network, visit, .. } = *self;
+        let slot = &self.state.trips[trip as usize];
+        let vehicle_type = &network.round.fleet().vehicle_type;
+        if network.has_length {
+            let added = network.length(previous, visit) + network.length(visit, next) - network.length(previous, next);
+            if slot.length + added > vehicle_type.max_length {
+                return false;
+            }
+        }
+        let mut energy = 0.0;
+        if network.has_energy {
+            let legs = network.energy(previous, visit) + network.energy(visit, next) - network.energy(previous, next);
+            energy = slot.energy + legs + network.service_energy(visit);
+        }
+        is_flyable(network, whole, busy, energy)
+    }
+
+    /// When the drone lands for good after a trip of these times and what follows it; `None` if something is too late.
+    #[inline]
+    fn finish(&self, whole: Segment, ready: f64, after: Segment) -> Option<f64> {
+        whole.end(ready).and_then(|end| after.end(end)).filter(|&finish| finish <= self.objective.cap)
+    }
+
+    /// What it costs that a drone lands later for good, beyond the time that the visit itself takes.
+    #[inline]
+    fn delay_price(&self, finish: f64, old_finish: f64, own: f64) -> f64 {
+        if !self.objective.is_longest {
+            return 0.0;
+        }
+        let delay = (finish - old_finish - own).max(0.0);
+        let overflow = (finish - self.objective.target.max(old_finish)).max(0.0);
+        delay + self.overflow_price * overflow
+    }
+
+    /// Trips of its own: before, between and behind those of each drone, or as the first of one that does not fly yet.
+    fn consider_new_trips(&mut self) {
         let Self { network, state, visit, .. } = *self;
+        let depot = network.depot();
+        let (leg_out, leg_home) = (network.duration(depot, visit), network.duration(visit, depot));
+        let fleet = network.round.fleet();
+        if leg_out + leg_home >= self.price
+            || (network.has_length
+                && network.length(depot, visit) + network.length(visit, depot) > fleet.vehicle_type.max_length)
+        {
+            return;
+        }
+        // Drones that do not fly yet differ by their layers alone; those that take off first come first.
+        let mut tried = None;
+        for (index, route) in state.routes.iter().enumerate() {
+            let is_unused = route.trips.is_empty();
+            if !(is_unused || fleet.turnaround.is_some()) || (is_unused && tried == Some(network.ends[index])) {
+                continue;
+            }
+            if is_unused {
+                tried = Some(network.ends[index]);
+            }
+            // Where nothing has its time, trips may as well follow each other in any order.
+            let first = if network.has_windows { 0 } else { route.trips.len() };
+            for number in first..=route.trips.len() {
+                self.consider_new_trip(route, index, number, leg_out, leg_home);
+                // A trip of its own costs the same whenever it is flown, and whoever flies it.
+                let is_found = matches!(self.target, Some(Target::New(..)));
+                if is_found && !self.objective.is_longest && network.are_ends_alike {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The windows in which a trip of this visit alone can be flown as number `number` of a route.
+    fn consider_new_trip(&mut self, route: &Route, index: usize, number: usize, leg_out: f64, leg_home: f64) {
+        let Self { network, state, visit, .. } = *self;
+        let ends = network.ends[index];
+        let legs = ends.out_duration + leg_out + leg_home + ends.home_duration;
+        let turnaround = if route.trips.is_empty() { 0.0 } else { network.turnaround() };
+        let (service, depot) = (network.service_duration(visit), network.depot());
+        let own = legs + self.objective.turnaround_cost(turnaround);
+        if own >= self.price {
+            return;
+        }
+        let mut energy = 0.0;
+        if network.has_energy {
+            energy = ends.energy
+                + network.energy(depot, visit)
+                + network.service_energy(visit)
+                + network.energy(visit, depot);
+        }
         let after = match route.trips.get(number) {
-            Some(&next) => state.followed_by(network, next, route.after[number])?,
-            None => network.end_of_shift(),
+            Some(&next) => state.followed_by(network, next, route.after[number]),
+            None => Some(network.end_of_shift()),
         };
-        (0..network.windows(visit).len() as u8).find(|&window| {
-            let trip = Segment::NOTHING
+        let Some(after) = after else { return };
+        for window in self.windows_in_turn() {
+            let whole = Segment::lasting(ends.out_duration)
                 .join(leg_out, network.segment(visit, window))
-                .and_then(|head| head.join(leg_home, Segment::NOTHING))
+                .and_then(|head| head.join(leg_home, Segment::lasting(ends.home_duration)))
                 .and_then(|whole| whole.not_before(network.release(visit)));
-            self.is_in_time(trip, route.ready[number], after)
-        })
+            let Some(whole) = whole else { continue };
+            let Some(finish) = self.finish(whole, route.ready[number], after) else { continue };
+            let price = own + self.delay_price(finish, route.finish, legs + service + turnaround);
+            if price < self.price && is_flyable(network, whole, legs + service, energy) {
+                self.price = price;
+                self.target = Some(Target::New(window, index as u32, number));
+            }
+        }
     }
 }

@@ -5,7 +5,7 @@
 //! are cut from trips. O(visits removed + length of the trips).
 
 use super::network::Network;
-use super::state::{ABSENT, OutOfTime, State, Touched};
+use super::state::{ABSENT, OverLimit, State, Touched};
 use crate::random::Random;
 
 const MEAN_REMOVED: f64 = 10.0;
@@ -31,21 +31,21 @@ impl Ruin {
         state: &mut State,
         random: &mut Random,
         touched: &mut Touched,
-    ) -> Result<(), OutOfTime> {
+    ) -> Result<(), OverLimit> {
         self.ruined.clear();
-        let num_trips = state.trips.len() - state.free.len();
+        let num_trips = state.num_trips();
         let mean_size = network.num_visits as f64 / num_trips.max(1) as f64;
         let max_string = mean_size.clamp(1.0, MAX_STRING);
         let num_strings = (random.uniform() * (4.0 * MEAN_REMOVED / (1.0 + max_string) - 1.0) + 1.0) as usize;
         let seed = random.below(network.num_visits) as u32;
-        for visit in std::iter::once(seed).chain(network.neighbours(seed).iter().copied()) {
+        for visit in std::iter::once(seed).chain(network.neighbours(seed).iter().map(|neighbour| neighbour.visit)) {
             if self.ruined.len() >= num_strings {
                 break;
             }
             let trip = state.places[visit as usize].trip;
             if trip != ABSENT && !self.ruined.contains(&trip) {
                 self.ruined.push(trip);
-                self.remove_string(state, visit, max_string, random, touched);
+                self.remove_string(network, state, visit, max_string, random, touched);
             }
         }
         state.renew_all(network, &self.ruined)
@@ -53,6 +53,7 @@ impl Ruin {
 
     fn remove_string(
         &mut self,
+        network: &Network<'_>,
         state: &mut State,
         through: u32,
         max_string: f64,
@@ -81,7 +82,7 @@ impl Ruin {
         self.cut.extend_from_slice(&visits[first..first + head]);
         self.cut.extend_from_slice(&visits[first + head + num_kept..first + window]);
         for &visit in &self.cut {
-            state.take_out(visit, touched);
+            state.take_out(network, visit, touched);
         }
     }
 }

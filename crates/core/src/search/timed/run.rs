@@ -1,19 +1,25 @@
 //! One search from start to end.
 
+use super::exchange::move_trip;
 use super::network::Network;
+use super::objective::{Objective, Rank, last_landing};
 use super::recreate::Recreate;
 use super::ruin::Ruin;
-use super::state::{State, Touched};
+use super::state::{OverLimit, State, Touched};
 use crate::effort::{Budget, Effort};
 use crate::random::Random;
-use crate::rounds::Round;
+use crate::rounds::{Round, RoundViolation, evaluate_round};
 use crate::search::options::{Options, RoundOutcome};
 
 /// Temperatures at the beginning and at the end, in mean legs of the first plan.
 const HOT: f64 = 0.3;
 const COLD: f64 = 0.003;
-/// What a visit costs that is not made, in lengths of the longest way out and home.
-const ABSENT_COST: f64 = 100.0;
+/// At the beginning of the work on what is flown, once the last landing is settled.
+const HOT_TOTAL: f64 = 0.3;
+/// Share of the effort at which that begins.
+const LONGEST_END: f64 = 0.9;
+/// Share of steps that move a trip, where drones fly several.
+const TRIP_SHARE: f64 = 0.05;
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: u64 = 8;
 
@@ -21,19 +27,20 @@ const STEPS_PER_LOOK: u64 = 8;
 pub fn solve(round: &Round, options: &Options<'_>) -> RoundOutcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let network = Network::new(round);
-    let mut search = Search::new(&network, options.seed);
-    search.anneal(&budget);
+    let mut search = Search::new(&network, options);
+    search.run(&budget);
     search.into_outcome()
 }
 
 /// An annealing chain.
 struct Search<'a> {
     network: &'a Network<'a>,
+    objective: Objective,
     random: Random,
     ruin: Ruin,
     recreate: Recreate,
     best: State,
-    best_value: f64,
+    best_rank: Rank,
     current: State,
     current_value: f64,
     /// Equal to `current` between steps.
@@ -41,72 +48,96 @@ struct Search<'a> {
     touched: Touched,
     /// What differs between `current` and `best`.
     since_best: Touched,
-    absent_cost: f64,
     num_iterations: u64,
+    /// Whether it matters which drone flies a trip, and when.
+    has_trip_moves: bool,
 }
 
 impl<'a> Search<'a> {
-    fn new(network: &'a Network<'a>, seed: u64) -> Self {
-        let mut random = Random::new(seed);
+    fn new(network: &'a Network<'a>, options: &Options<'_>) -> Self {
+        let mut random = Random::new(options.seed);
         let mut recreate = Recreate::default();
         let mut touched = Touched::default();
+        let mut objective = Objective::new(network, options.goal);
         let mut state = State::new(network);
-        let furthest = (0..network.depot()).map(|visit| network.leg(network.depot(), visit)).fold(0.0, f64::max);
-        // Of a place that is late by rounding after all, the first plan knows nothing; the steps find others.
         let mut first = state.clone();
-        if recreate.insert(network, &mut first, network.num_visits, &mut random, &mut touched).is_ok() {
+        objective.target = first_target(network);
+        // Of a place that is late by rounding after all, the first plan knows nothing; the steps find others.
+        let (num_new, no_end) = (network.num_visits, f64::INFINITY);
+        let made = recreate.insert(network, &mut first, num_new, &objective, no_end, &mut random, &mut touched);
+        if made.is_ok() && objective.value(network, &first).is_finite() {
             state = first;
         }
-        let absent_cost = ABSENT_COST * (2.0 * furthest).max(f64::MIN_POSITIVE);
-        let mut search = Self {
+        let (value, rank) = (objective.value(network, &state), objective.rank(network, &state));
+        objective.target = state.longest();
+        Self {
             network,
+            objective,
             random,
             ruin: Ruin::default(),
             recreate,
             best: state.clone(),
-            best_value: 0.0,
+            best_rank: rank,
             current: state.clone(),
-            current_value: 0.0,
+            current_value: value,
             trial: state,
             touched: Touched::default(),
             since_best: Touched::default(),
-            absent_cost,
             num_iterations: 0,
-        };
-        search.current_value = search.value();
-        search.best_value = search.current_value;
-        search
+            has_trip_moves: network.round.fleet().turnaround.is_some() || !network.are_ends_alike,
+        }
     }
 
-    fn value(&self) -> f64 {
-        self.trial.length + self.absent_cost * self.trial.bank.len() as f64
-    }
-
-    fn anneal(&mut self, budget: &Budget<'_>) {
+    /// The whole search: when the last drone lands, if that counts, then what is flown.
+    fn run(&mut self, budget: &Budget<'_>) {
         let mut effort = Effort::new(budget);
-        let mean_leg = self.current.length / (self.network.num_visits as f64).max(1.0);
-        let mut share = effort.share();
-        while share < 1.0 {
-            let temperature = mean_leg * HOT * libm::pow(COLD / HOT, share);
+        if self.objective.is_longest {
+            self.anneal(&mut effort, LONGEST_END, HOT);
+            let within = self.objective.total_within(self.best_rank.longest);
+            self.restart(within);
+            self.anneal(&mut effort, 1.0, HOT_TOTAL);
+        } else {
+            self.anneal(&mut effort, 1.0, HOT);
+        }
+        self.num_iterations = effort.num_iterations;
+    }
+
+    /// Goes on from the best plan with another objective.
+    fn restart(&mut self, objective: Objective) {
+        self.objective = objective;
+        self.current.clone_from(&self.best);
+        self.trial.clone_from(&self.best);
+        self.since_best.clear();
+        self.current_value = objective.value(self.network, &self.best);
+        self.best_rank = objective.rank(self.network, &self.best);
+    }
+
+    fn anneal(&mut self, effort: &mut Effort<'_>, end: f64, hot: f64) {
+        let mean_leg = self.current.travel / self.network.num_visits as f64;
+        let begin = effort.share();
+        let mut share = begin;
+        while share < end {
+            let temperature = mean_leg * hot * libm::pow(COLD / hot, (share - begin) / (end - begin));
             for _ in 0..STEPS_PER_LOOK {
                 self.step(temperature);
             }
-            effort.add(STEPS_PER_LOOK, self.best.length);
+            let cost = if self.objective.is_longest { self.best.longest() } else { self.best.travel };
+            effort.add(STEPS_PER_LOOK, cost);
             share = effort.share();
         }
-        self.num_iterations = effort.num_iterations;
     }
 
     fn step(&mut self, temperature: f64) {
         // 1 - u is never 0, so the logarithm is finite.
         let threshold = self.current_value - temperature * libm::log(1.0 - self.random.uniform());
-        let num_old = self.trial.bank.len();
-        let ruined = self.ruin.remove(self.network, &mut self.trial, &mut self.random, &mut self.touched);
-        let num_new = self.trial.bank.len() - num_old;
-        let made = ruined.and_then(|()| {
-            self.recreate.insert(self.network, &mut self.trial, num_new, &mut self.random, &mut self.touched)
-        });
-        let value = if made.is_ok() { self.value() } else { f64::INFINITY };
+        let is_trip_move = self.has_trip_moves && self.random.uniform() < TRIP_SHARE;
+        let made = if is_trip_move {
+            move_trip(self.network, &mut self.trial, &mut self.random, &mut self.touched)
+        } else {
+            self.ruin_and_recreate(threshold)
+        };
+        let is_whole = made.is_ok_and(|is_whole| is_whole);
+        let value = if is_whole { self.objective.value(self.network, &self.trial) } else { f64::INFINITY };
         if value < threshold {
             self.accept(value);
         } else {
@@ -115,12 +146,29 @@ impl<'a> Search<'a> {
         self.touched.clear();
     }
 
+    fn ruin_and_recreate(&mut self, threshold: f64) -> Result<bool, OverLimit> {
+        let num_old = self.trial.bank.len();
+        self.ruin.remove(self.network, &mut self.trial, &mut self.random, &mut self.touched)?;
+        let num_new = self.trial.bank.len() - num_old;
+        self.recreate.insert(
+            self.network,
+            &mut self.trial,
+            num_new,
+            &self.objective,
+            threshold,
+            &mut self.random,
+            &mut self.touched,
+        )
+    }
+
     fn accept(&mut self, value: f64) {
         self.current.copy_touched(&self.trial, &self.touched);
         self.current_value = value;
         self.since_best.extend(&self.touched);
-        if value < self.best_value {
-            self.best_value = value;
+        let rank = self.objective.rank(self.network, &self.current);
+        if rank.is_better(&self.best_rank) {
+            self.best_rank = rank;
+            self.objective.target = self.current.longest();
             self.best.copy_touched(&self.current, &self.since_best);
             self.since_best.clear();
         }
@@ -129,9 +177,59 @@ impl<'a> Search<'a> {
     fn into_outcome(self) -> RoundOutcome {
         let to_indices =
             |&trip: &u32| self.best.trips[trip as usize].visits.iter().map(|&visit| visit as usize).collect();
-        let routes = (self.best.routes.iter().filter(|route| !route.trips.is_empty()))
-            .map(|route| route.trips.iter().map(to_indices).collect())
-            .collect();
-        RoundOutcome { routes, num_iterations: self.num_iterations }
+        let routes = self.best.routes.iter().map(|route| route.trips.iter().map(to_indices).collect()).collect();
+        RoundOutcome {
+            routes: without_late_visits(self.network, routes),
+            makespan: last_landing(self.network, &self.best),
+            num_iterations: self.num_iterations,
+        }
     }
+}
+
+/// The routes without what comes too late after all: a drone that makes a visit in an earlier window than the search gave it may
+/// take the place at the depot from another, which is late then.
+fn without_late_visits(network: &Network<'_>, mut routes: Vec<Vec<Vec<usize>>>) -> Vec<Vec<Vec<usize>>> {
+    let has_choice = (0..network.depot()).any(|visit| network.windows(visit).len() > 1);
+    while has_choice && network.has_queue() {
+        let Ok(plan) = evaluate_round(network.round, &routes) else { break };
+        let last = |route: usize| plan.routes[route].last().and_then(|trip| trip.stops.last()).map(|stop| stop.visit);
+        let late: Vec<usize> = (plan.violations.iter())
+            .filter_map(|broken| match *broken {
+                RoundViolation::Late { visit, .. } => Some(visit),
+                RoundViolation::ShiftOver { route, .. } => last(route),
+                _ => None,
+            })
+            .collect();
+        if late.is_empty() {
+            break;
+        }
+        routes.iter_mut().flatten().for_each(|trip| trip.retain(|visit| !late.contains(visit)));
+    }
+    routes
+}
+
+/// A landing that the first plan aims at: what all visits take, shared by the drones. Each comes from somewhere near, and a trip
+/// is as full as its battery allows.
+fn first_target(network: &Network<'_>) -> f64 {
+    let depot = network.depot();
+    let near = |visit: u32| match network.neighbours(visit).first() {
+        Some(neighbour) => neighbour.leg_from,
+        None => 0.0,
+    };
+    let mut busy = 0.0;
+    let usable = network.round.fleet().vehicle_type.energy.usable_energy;
+    for visit in 0..depot {
+        busy += near(visit) + network.service_duration(visit);
+        if network.has_energy {
+            let nearest = network.neighbours(visit).first().map_or(0.0, |near| network.energy(near.visit, visit));
+            let ends = network.ends[0].energy + network.energy(depot, visit) + network.energy(visit, depot);
+            let trip = (usable - ends).max(0.05 * usable);
+            let share = (nearest + network.service_energy(visit)) / trip;
+            let legs = network.duration(depot, visit) + network.duration(visit, depot);
+            let ends = network.ends[0].out_duration + network.ends[0].home_duration;
+            busy += share * (legs + ends + network.turnaround());
+        }
+    }
+    let fleet = network.round.fleet();
+    fleet.first_takeoff(0) + busy / network.ends.len() as f64
 }

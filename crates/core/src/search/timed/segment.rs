@@ -15,9 +15,21 @@ pub(super) struct Segment {
     pub latest: f64,
 }
 
+impl Default for Segment {
+    fn default() -> Self {
+        Self::NOTHING
+    }
+}
+
 impl Segment {
     /// What takes no time at any time.
     pub const NOTHING: Self = Self { duration: 0.0, earliest: f64::NEG_INFINITY, latest: f64::INFINITY };
+
+    /// What takes this long, at any time.
+    #[inline]
+    pub const fn lasting(duration: f64) -> Self {
+        Self { duration, ..Self::NOTHING }
+    }
 
     /// This, a leg, and then `next`; `None` if `next` cannot be reached in time.
     #[inline]
