@@ -11,9 +11,9 @@ output.mkdir(parents=True, exist_ok=True)
 farm = pondhop.read_farm(Path(__file__).with_name("delta_farm.geojson"))
 farm_plan = pondhop.plan(farm, pondhop.Fleet(num_drones=5))
 
-plan = farm_plan.solution.plan
-for drone, (route, length_m) in enumerate(zip(plan.routes, plan.route_lengths, strict=True), start=1):
-    print(f"drone {drone}: {len(route)} ponds, {length_m / 1000:.1f} km, first to {farm.ponds[route[0]].id}")
+for trip in farm_plan.trips:
+    first = farm.ponds[trip.ponds[0]].id
+    print(f"drone {trip.drone + 1}: {len(trip.ponds)} ponds, {trip.length_m / 1000:.1f} km, first to {first}")
 
 pondhop.write_plan_json(output / "plan.json", farm_plan)
 for mission in pondhop.write_missions(output, farm_plan):

@@ -152,7 +152,6 @@ FUNCTIONS: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
         pondhop.FarmPlan,
         {"farm": FARM, "fleet": Fleet(2), "solution": FARM_PLAN.solution, "obstacles": (), "are_layers_stacked": False},
     ),
-    "FarmPlan.energy_phases": (FARM_PLAN.energy_phases, {"drone": 0}),
     "FarmPlan.violations_told_in": (FARM_PLAN.violations_told_in, {"units": "us"}),
     "FarmPlan.notes_told_in": (FARM_PLAN.notes_told_in, {"units": "us"}),
     "Solution": (

@@ -227,7 +227,7 @@ def test_a_truth_value_of_numpy_and_none_are_no_numbers() -> None:
 
 
 def test_every_setting_has_a_range_and_a_source() -> None:
-    names = {item.name for item in fields(Fleet)} - {"assumptions", "sampling"}
+    names = {item.name for item in fields(Fleet)} - {"assumptions", "sampling", "start", "end"}
     assert names == set(NUMBERS)
     for name in names:
         default = getattr(Fleet(1), name)

@@ -309,14 +309,14 @@ def test_the_readme_tells_what_a_crew_must_know(tmp_path: Path) -> None:
     farm_plan = make_plan(make_farm(), fleet, [[0, 1, 2], [4, 3]])
     write_missions(tmp_path, farm_plan)
     text = " ".join((tmp_path / "README.txt").read_text().split())
-    most_j = max(farm_plan.solution.plan.route_energies_j)
+    most_j = max(farm_plan.plan.route_energies_j)
     for words in (
         "drone-2: 2 ponds",
         "takes off at 0:10, flies out 10 m high, comes home 18 m high",
         "energy: take-off",
         f"A battery gives 71.2 Wh above its reserve of 25 %; the hungriest route takes {most_j / 3600:.1f} Wh, "
         f"{100 * most_j / (3600 * 71.25):.0f} % of it.",
-        f"is back at {clock_text(10.0 + farm_plan.solution.plan.route_durations_s[1])}",
+        f"is back at {clock_text(10.0 + farm_plan.plan.route_durations_s[1])}",
         "Start every drone with a full battery.",
         "RTL_ALT 1500",
         "DISARM_DELAY 40",
@@ -693,7 +693,7 @@ def test_a_ponds_own_time_on_station_is_flown_as_planned(sampling: SamplingStyle
     own_s = (None, 25.0, 30.4, 1000.7, 60.0)
     ponds = tuple(replace(pond, service_s=own) for pond, own in zip(make_farm().ponds, own_s, strict=True))
     farm_plan = make_plan(make_farm(ponds=ponds), Fleet(1, sampling=sampling), [[0, 1, 2, 3, 4]])
-    plan, mission = farm_plan.solution.plan, build_mission(0, farm_plan.farm, farm_plan.fleet, [0, 1, 2, 3, 4])
+    plan, mission = farm_plan.plan, build_mission(0, farm_plan.farm, farm_plan.fleet, [0, 1, 2, 3, 4])
     planned = plan.departures_s[0] - plan.arrivals_s[0]
     assert list(time_at_ponds_s(mission).values()) == pytest.approx(planned)
     for pond, planned_s in zip(ponds, planned, strict=True):
@@ -723,7 +723,7 @@ def test_less_time_on_station_than_sampling_takes_is_a_fault(sampling: SamplingS
         farm = make_farm(ponds=changed + ponds[len(own_s) :])
         return make_plan(farm, Fleet(1, sampling=sampling), [[0, 1, 2, 3, 4]])
 
-    assert plan_with(least_s).solution.plan.is_feasible
+    assert plan_with(least_s).plan.is_feasible
     for own_s, place in (((least_s, least_s - 0.1), "pond P1"), ((0.0, 0.5), "ponds P0, P1")):
         with pytest.raises(InvalidInput, match=f"^{place}: service_s is .* takes {least_s:g} s at least") as caught:
             plan_with(*own_s)
@@ -739,7 +739,7 @@ def heights_of_ways(farm_plan: FarmPlan, tmp_path: Path) -> list[tuple[float, fl
             or 0.0,
             parameters(tmp_path / f"drone-{number}.param")["RTL_ALT"] / 100,
         )
-        for number in range(1, len(farm_plan.solution.plan.routes) + 1)
+        for number in range(1, len(farm_plan.plan.routes) + 1)
     ]
 
 
@@ -753,7 +753,7 @@ def test_ways_out_and_home_keep_their_distance(num_drones: int, takeoff_interval
     fleet = Fleet(num_drones, takeoff_interval_s=takeoff_interval_s)
     farm_plan = pondhop_plan(make_farm(), fleet, iterations=2000)
     assert farm_plan.is_feasible
-    heights_m, plan = heights_of_ways(farm_plan, tmp_path), farm_plan.solution.plan
+    heights_m, plan = heights_of_ways(farm_plan, tmp_path), farm_plan.plan
     for one, (out_m, one_home_m) in enumerate(heights_m):
         for other, (other_out_m, home_m) in enumerate(heights_m):
             if one == other:

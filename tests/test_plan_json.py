@@ -54,9 +54,9 @@ def assert_equal(found: FarmPlan, expected: FarmPlan) -> None:
     )
     for name in ("planner", "seed", "reason", "is_interrupted", "lower_bound_s", "gap_s_percent", "separation"):
         assert getattr(found.solution, name) == getattr(expected.solution, name)
-    assert found.solution.plan.routes == expected.solution.plan.routes
-    assert np.array_equal(found.solution.plan.route_lengths, expected.solution.plan.route_lengths)
-    assert found.solution.plan.violations == expected.solution.plan.violations
+    assert found.plan.routes == expected.plan.routes
+    assert np.array_equal(found.plan.route_lengths, expected.plan.route_lengths)
+    assert found.plan.violations == expected.plan.violations
     assert found.violations == expected.violations
 
 
@@ -137,7 +137,7 @@ def test_a_file_of_every_released_version_stays_readable(name: str) -> None:
     farm_plan = read_plan_json(RELEASES / name)
     assert [pond.id for pond in farm_plan.farm.ponds] == [pond["id"] for pond in content["farm"]["ponds"]]
     assert farm_plan.fleet.sampling == content["fleet"]["sampling"]
-    assert farm_plan.solution.plan.makespan_s == pytest.approx(content["summary"]["makespan_s"])
+    assert farm_plan.plan.makespan_s == pytest.approx(content["summary"]["makespan_s"])
     assert farm_plan.is_feasible is content["summary"]["is_feasible"]
 
 
@@ -145,7 +145,7 @@ def test_the_file_of_0_1_0_has_its_own_times_and_a_note() -> None:
     farm_plan = read_plan_json(RELEASES / "plan-0.1.0.json")
     # Landing 7 / 0.5 + 2.4, dwell 8, climb 6.7 s; legs d / 5 + 3 s; no take-off, no way home.
     assert farm_plan.solution.problem.service_durations_s.tolist()[1] == pytest.approx(16.4 + 8 + 6.7)
-    assert farm_plan.solution.plan.makespan_s == pytest.approx(349.612, abs=1e-3)
+    assert farm_plan.plan.makespan_s == pytest.approx(349.612, abs=1e-3)
     assert [violation.kind for violation in farm_plan.violations] == ["too_slow", "too_slow"]
     assert "version 0.1" in farm_plan.notes[-1]
 
@@ -161,7 +161,7 @@ def test_a_plan_with_everything_survives_the_round_trip(tmp_path: Path) -> None:
     )
     fleet = Fleet(num_drones=1, sampling="splashdown", max_route_length_m=500, max_route_duration_s=1e5)
     farm_plan = make_plan(farm, fleet, [[0], [1]])
-    measured = separation(farm_plan.solution.problem, farm_plan.solution.plan.routes)
+    measured = separation(farm_plan.solution.problem, farm_plan.plan.routes)
     solution = replace(farm_plan.solution, separation=measured)
     farm_plan = replace(farm_plan, solution=solution)
     content = written(tmp_path, farm_plan)

@@ -162,7 +162,7 @@ def test_drones_that_stay_at_home_cost_nothing() -> None:
 
 def test_each_drone_takes_as_long_as_its_own_layer() -> None:
     farm, fleet = make_farm(), Fleet(4)
-    plan = pondhop.plan(farm, fleet).solution.plan
+    plan = pondhop.plan(farm, fleet).plan
     assert len(plan.routes) > 2
     for drone, route in enumerate(plan.routes):
         # A fleet of one that comes home that much higher, and what the way out takes more: up, and down at its pond.

@@ -47,7 +47,7 @@ def grid(num_ponds_per_side: int) -> Problem:
 def test_the_legend_tells_each_routes_length_energy_and_times() -> None:
     farm_plan = two_drones()
     ax = plot_plan(farm_plan)
-    plan, interval_s = farm_plan.solution.plan, farm_plan.fleet.takeoff_interval_s
+    plan, interval_s = farm_plan.plan, farm_plan.fleet.takeoff_interval_s
     lengths, durations, energies = plan.route_lengths, plan.route_durations_s, plan.route_energies_j
     assert set(legend_texts(ax)) == {
         f"1: 3 ponds, {lengths[0]:.0f} m, {energies[0] / 3600:.1f} Wh, starts 0:00, back {clock_text(durations[0])}",
@@ -107,7 +107,7 @@ def test_a_plan_that_breaks_a_rule_of_the_farm_is_not_to_be_flown() -> None:
     # A zone in the way breaks no rule of the routes themselves: only the farm knows of it.
     farm = make_farm(no_fly=((square(-89.0015, 37.001, 0.0002),),))
     plan = make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3, 4]])
-    assert plan.solution.plan.is_feasible
+    assert plan.plan.is_feasible
     assert "NOT TO BE FLOWN: 1 rule broken" in told(plot_plan(missions.judged(plan)))
     unserved = make_plan(farm, Fleet(num_drones=1), [[0, 1, 2, 3]])
     assert "NOT TO BE FLOWN: 2 rules broken" in told(plot_plan(missions.judged(unserved)))

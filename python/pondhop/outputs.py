@@ -18,6 +18,8 @@ from pondhop.units import Units
 
 PLAN_JSON, PLAN_GEOJSON, MISSIONS = "plan.json", "plan.geojson", "missions"
 FIGURES = ("plan.png", "plan.svg")
+NIGHT_FIGURES = ("night.png", "night.svg")
+"""Of rounds: trips, swaps and batteries over the clock."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,9 @@ def write_outputs(
 
         axes, unwritten = plot.drawn_plan(farm_plan, units=units)
         pictures = {name: plot.figure_bytes(axes, name.rpartition(".")[2]) for name in FIGURES}
+        if farm_plan.is_round and farm_plan.trips:
+            night = plot.plot_night(farm_plan)
+            pictures |= {name: plot.figure_bytes(night, name.rpartition(".")[2]) for name in NIGHT_FIGURES}
         farm_plan = _with_note_of_letters(farm_plan, unwritten)
     text = plan_json(farm_plan)
     files: dict[str, Content] = {PLAN_JSON: text, PLAN_GEOJSON: plan_geojson(farm_plan)}
@@ -92,7 +97,7 @@ def write_outputs(
         faults = error.faults
     files |= pictures
     replace_files(folder, files, _earlier(folder), (PLAN_JSON, f"{MISSIONS}/{README}"))
-    names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *(FIGURES if has_figure else ())]
+    names = [PLAN_JSON, PLAN_GEOJSON, *(() if faults else [f"{MISSIONS}/"]), *pictures]
     return Outputs(tuple(names), text, faults, farm_plan)
 
 
@@ -133,5 +138,5 @@ def _with_note_of_letters(farm_plan: FarmPlan, missing: frozenset[str]) -> FarmP
 
 def _earlier(folder: Path) -> list[str]:
     """Files of an earlier plan in the folder; those of the user are none."""
-    plans = earlier_files(folder, (PLAN_JSON, PLAN_GEOJSON, *FIGURES), PLAN_JSON, BEGINNING)
+    plans = earlier_files(folder, (PLAN_JSON, PLAN_GEOJSON, *FIGURES, *NIGHT_FIGURES), PLAN_JSON, BEGINNING)
     return [*plans, *(f"{MISSIONS}/{name}" for name in earlier_missions(folder / MISSIONS))]

@@ -18,13 +18,13 @@ from typing import Literal, TypedDict, Unpack, get_args
 
 import numpy as np
 
-from pondhop import _core, missions
+from pondhop import _core, missions, nights
 from pondhop._core import Problem
 from pondhop.arguments import Arguments, shown
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm
 from pondhop.farm.words import pond_called
-from pondhop.fleet import Fleet
+from pondhop.fleet import CALM, Fleet, Wind
 from pondhop.proofs import Proofs
 from pondhop.solution import FarmPlan, FarmViolation, Solution
 
@@ -424,10 +424,14 @@ def plan(
     farm: Farm,
     fleet: Fleet,
     *,
+    wind: Wind = CALM,
     planner: str | PlannerFunction = "auto",
     **options: Unpack[OptionFields],
 ) -> FarmPlan:
     """Plan a round over a farm for a fleet.
+
+    Where the fleet changes batteries (``swap_s``), there is wind, ponds have time windows, or the round has an end, it
+    is planned as trips by `pondhop.nights`; else each drone flies one route.
 
     Parameters
     ----------
@@ -435,6 +439,8 @@ def plan(
         See `pondhop.read_farm`.
     fleet
         The drones and how they sample.
+    wind
+        How strong it blows and where from.
     planner, **options
         See `solve`.
 
@@ -451,18 +457,51 @@ def plan(
     arguments = Arguments()
     arguments.kind("farm", farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
     arguments.kind("fleet", fleet, Fleet, "give a pondhop.Fleet, as in pondhop.Fleet(num_drones=3)")
+    arguments.kind("wind", wind, Wind, "give a pondhop.Wind, as in pondhop.Wind(8.0, 225.0)")
     arguments.check()
+    if nights.needs_round(farm, fleet, wind):
+        farm_plan = _plan_round(farm, fleet, wind, planner, options)
+        return replace(farm_plan, obstacles=missions.obstacles(farm_plan))
     problem = farm.to_problem(fleet)
     solved = solve(problem, planner=planner, **options)
     solution = replace(solved, separation=_core.separation(problem, solved.plan.routes))
     farm_plan = _in_layers(FarmPlan(farm, fleet, solution))
-    solution = farm_plan.solution
     beyond: tuple[FarmViolation, ...] = ()
-    if any(violation.kind in LIMIT_KINDS for violation in solution.plan.violations):
+    if any(violation.kind in LIMIT_KINDS for violation in farm_plan.plan.violations):
         beyond = tuple(_ponds_beyond_reach(farm, solution))
         if not beyond and not solution.is_interrupted:
             farm_plan = _with_enough_drones(farm_plan, Options(**options))
     return replace(farm_plan, obstacles=(*beyond, *missions.obstacles(farm_plan)))
+
+
+_OF_ROUND = frozenset({"time_limit_s", "iterations", "objective"})
+"""Options that the search for rounds knows, besides those that all planners have."""
+
+
+def _plan_round(
+    farm: Farm, fleet: Fleet, wind: Wind, planner: str | PlannerFunction, options: OptionFields
+) -> FarmPlan:
+    """Return a round of trips: by the search for rounds, or the routes of another planner cut into trips."""
+    wishes = _wishes(options)
+    chosen, faults = _chosen(planner)
+    faults = [*_faults(replace(wishes, start=None), farm.to_problem(fleet), chosen), *faults]
+    if wishes.start is not None:
+        faults.append(Fault("start", "a round of trips cannot begin with routes yet", "leave it out"))
+    if chosen is None or faults:
+        raise InvalidInput(faults)
+    effort = nights.Effort(int(wishes.seed), wishes.time_limit_s, wishes.iterations, wishes.objective, wishes.progress)
+    if planner in ("auto", "search"):
+        passed_over = replace(PLANNERS["search"], obeys=_OF_ROUND, also_obeys=_nothing_more).passed_over(wishes)
+        return nights.plan_round(farm, fleet, wind, effort, passed_over=passed_over)
+
+    def routes(problem: Problem) -> Routes:
+        """Plan as if no battery were ever empty; the trips are cut afterwards."""
+        limitless = problem.replace(energy=problem.energy.replace(usable_j=float("inf")), layers=None)
+        return chosen.run(limitless, wishes).routes
+
+    return nights.plan_round(
+        farm, fleet, wind, effort, planner=chosen.name, routes=routes, passed_over=chosen.passed_over(wishes)
+    )
 
 
 def _ponds_beyond_reach(farm: Farm, solution: Solution) -> Iterator[FarmViolation]:
@@ -504,9 +543,9 @@ def _hungriest_lowest(problem: Problem, routes: Routes) -> Routes:
 
 def _in_layers(farm_plan: FarmPlan) -> FarmPlan:
     """Return a plan with all ways home above all ways out, if drones would come too near to each other without."""
-    if farm_plan.near_drones is None:
-        return farm_plan
     solution = farm_plan.solution
+    if farm_plan.near_drones is None or not isinstance(solution, Solution):
+        return farm_plan
     try:
         problem = farm_plan.farm.to_problem(farm_plan.fleet, are_layers_stacked=True)
     except InvalidInput:
@@ -523,6 +562,8 @@ def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
     limit is told: whoever follows the advice comes here again with that number, and gets that plan.
     """
     farm, fleet, solution = farm_plan.farm, farm_plan.fleet, farm_plan.solution
+    if not isinstance(solution, Solution):
+        return farm_plan
     is_separate = options.has_separate_airspace or solution.planner == "territory"
     proofs = Proofs(solution.problem)
 
@@ -559,7 +600,7 @@ def _with_enough_drones(farm_plan: FarmPlan, options: Options) -> FarmPlan:
     if best is None:
         return farm_plan
     if enough == fleet.num_drones and solution.planner in ADVISED:
-        separation = _core.separation(best.solution.problem, best.solution.plan.routes)
+        separation = _core.separation(best.solution.problem, best.plan.routes)
         return replace(best, solution=replace(best.solution, separation=separation))
     return replace(farm_plan, num_drones_needed=enough)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
@@ -12,16 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pondhop import _core
-from pondhop._core import Plan, Problem, Separation, Violation, evaluate
+from pondhop._core import Plan, Problem, Round, RoundPlan, RoundViolation, Separation, Violation, evaluate
 from pondhop.arguments import Arguments
+from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
 from pondhop.farm.model import Farm
 from pondhop.farm.words import pond_called
-from pondhop.fleet import Fleet
+from pondhop.fleet import CALM, Fleet, Wind
+from pondhop.fleet.clock import clock_after
 from pondhop.fleet.layers import Layers
 from pondhop.fleet.settings import AIRFRAME_SPEED_M_S
 from pondhop.palette import route_colour
-from pondhop.units import Units, counted, duration_text, energy_text, length_text, speed_text
+from pondhop.trips import Trip, trips_of_plan, trips_of_round
+from pondhop.units import Units, clock_text, counted, duration_text, energy_text, length_text, speed_text
 
 NO_NUMBER = "no number of drones is known to keep it"
 
@@ -92,14 +96,7 @@ class Solution:
     @property
     def passed_over_text(self) -> str:
         """A sentence about the options that the planner has no use for; empty where there are none."""
-        if not self.passed_over:
-            return ""
-        names = ", ".join(
-            name.removesuffix("_s").removesuffix("_percent").removeprefix("has_") for name in self.passed_over
-        )
-        return (
-            f"Planner {self.planner} has no use for what was asked for, and passed it over: {names.replace('_', ' ')}."
-        )
+        return passed_over_text(self.planner, self.passed_over)
 
     @property
     def gap_percent(self) -> float | None:
@@ -110,6 +107,62 @@ class Solution:
     def gap_s_percent(self) -> float | None:
         """How far the route that takes longest is above its lower bound, both in seconds; `None` if the bound is 0."""
         return gap_percent(self.plan.makespan_s, self.lower_bound_s)
+
+
+@dataclass(frozen=True)
+class RoundSolution:
+    """What the search made of a round: trips, windows, wind.
+
+    Attributes
+    ----------
+    round, problem
+        The task, and what it was made of.
+    plan
+        The judged trips.
+    planner, seed, elapsed_s, cpu_s, is_interrupted, reason, passed_over, known_lower_bound_s
+        As of `Solution`.
+    separation
+        `None`: trips of one drone lie across those of others, and times keep them apart.
+    """
+
+    round: Round
+    problem: Problem
+    plan: RoundPlan
+    planner: str
+    seed: int
+    elapsed_s: float
+    cpu_s: float = 0.0
+    is_interrupted: bool = False
+    reason: str = ""
+    passed_over: tuple[str, ...] = ()
+    known_lower_bound_s: float | None = None
+    separation: Separation | None = None
+
+    @property
+    def passed_over_text(self) -> str:
+        """A sentence about the options that the planner has no use for; empty where there are none."""
+        return passed_over_text(self.planner, self.passed_over)
+
+    @cached_property
+    def lower_bound_s(self) -> float:
+        """No plan that makes all visits has its last landing earlier."""
+        known_s = self.known_lower_bound_s
+        return _core.round_bound(self.round) if known_s is None else known_s
+
+    @property
+    def gap_s_percent(self) -> float | None:
+        """How far the last landing is above its lower bound; `None` if ponds are left out, or the bound is 0."""
+        if any(violation.kind == "unserved" for violation in self.plan.violations):
+            return None
+        return gap_percent(self.plan.makespan_s, self.lower_bound_s)
+
+
+def passed_over_text(planner: str, passed_over: tuple[str, ...]) -> str:
+    """Return a sentence about options that a planner has no use for; an empty one for none."""
+    if not passed_over:
+        return ""
+    names = ", ".join(name.removesuffix("_s").removesuffix("_percent").removeprefix("has_") for name in passed_over)
+    return f"Planner {planner} has no use for what was asked for, and passed it over: {names.replace('_', ' ')}."
 
 
 def gap_percent(longest: float, lower_bound: float) -> float | None:
@@ -129,8 +182,8 @@ class FarmViolation:
         What is wrong, in a sentence.
     remedy
         What the user can do about it.
-    drone
-        Number of the drone from 1, where it concerns one.
+    drone, trip
+        Number of the drone and of its trip, from 1, where it concerns one.
     pond
         Index of the pond, where it concerns one.
     value, limit
@@ -144,27 +197,26 @@ class FarmViolation:
     pond: int | None = None
     value: float | None = None
     limit: float | None = None
+    trip: int | None = None
 
 
 @dataclass(frozen=True)
-class EnergyPhases:
-    """What a route takes from its battery, in joules, by what the drone does.
+class Unserved:
+    """A pond that no drone samples, with why and what would help.
 
     Attributes
     ----------
-    takeoff_j, legs_j, sampling_j, way_home_j
-        The first take-off; flights to and between ponds; time on station; the way home with its landing.
+    pond
+        Its index.
+    reason
+        Why no drone does, in a sentence.
+    remedies
+        What would change it, the least first; each was planned, not guessed.
     """
 
-    takeoff_j: float
-    legs_j: float
-    sampling_j: float
-    way_home_j: float
-
-    @property
-    def total_j(self) -> float:
-        """The whole route."""
-        return self.takeoff_j + self.legs_j + self.sampling_j + self.way_home_j
+    pond: int
+    reason: str
+    remedies: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -182,20 +234,28 @@ class FarmPlan:
         How many drones keep every limit where this plan breaks one; `None` where it breaks none, or nobody tried.
     are_layers_stacked
         Whether all drones come home above all ways out, because time would not keep them apart.
+    wind
+        What the round was planned for.
+    unserved
+        Why ponds are left out of a round, and what would help.
     """
 
     farm: Farm
     fleet: Fleet
-    solution: Solution
+    solution: Solution | RoundSolution
     obstacles: tuple[FarmViolation, ...] = ()
     num_drones_needed: int | None = None
     are_layers_stacked: bool = False
+    wind: Wind = CALM
+    unserved: tuple[Unserved, ...] = ()
 
     def __post_init__(self) -> None:
         arguments = Arguments()
         arguments.kind("farm", self.farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
         arguments.kind("fleet", self.fleet, Fleet, "give a pondhop.Fleet")
-        arguments.kind("solution", self.solution, Solution, "give a pondhop.Solution")
+        if not isinstance(self.solution, RoundSolution):
+            arguments.kind("solution", self.solution, Solution, "give a pondhop.Solution")
+        arguments.kind("wind", self.wind, Wind, "give a pondhop.Wind, as in pondhop.Wind(8.0, 225.0)")
         arguments.all_kind("obstacles", self.obstacles, FarmViolation, "give violations of a farm's plan")
         arguments.truth("are_layers_stacked", self.are_layers_stacked)
         arguments.check()
@@ -207,8 +267,16 @@ class FarmPlan:
 
     def _violations(self, units: Units) -> tuple[FarmViolation, ...]:
         check_units(units)
-        broken = self.solution.plan.violations
-        return (*(self._in_words(violation, units) for violation in broken), *self.obstacles)
+        told = self._broken_by_round(units) if self.is_round else self._broken_by_plan(units)
+        return (*told, *self.obstacles)
+
+    def _broken_by_plan(self, units: Units) -> list[FarmViolation]:
+        plan = self.solution.plan
+        return [self._in_words(violation, units) for violation in plan.violations] if isinstance(plan, Plan) else []
+
+    def _broken_by_round(self, units: Units) -> list[FarmViolation]:
+        plan = self.solution.plan
+        return [self._round_in_words(found, units) for found in plan.violations] if isinstance(plan, RoundPlan) else []
 
     @property
     def told_violations(self) -> tuple[FarmViolation, ...]:
@@ -257,6 +325,44 @@ class FarmPlan:
         return self.fleet.layers(len(self.farm.ponds), are_stacked=self.are_layers_stacked)
 
     @property
+    def plan(self) -> Plan:
+        """The judged routes, where each drone flies one and nothing else was asked for.
+
+        Raises
+        ------
+        InvalidInput
+            If it is a round: its ``trips`` say what is flown.
+        """
+        if isinstance(self.solution, RoundSolution):
+            message = "this is a round of trips, and has no plan of one route a drone"
+            raise InvalidInput([Fault("plan", message, "look at its trips, or at solution.plan")])
+        return self.solution.plan
+
+    @property
+    def is_round(self) -> bool:
+        """Whether it was planned with trips, windows, wind or an end, not one route a drone alone."""
+        return isinstance(self.solution, RoundSolution)
+
+    @cached_property
+    def trips(self) -> tuple[Trip, ...]:
+        """What is flown, drone by drone, each trip with its times; a drone that flies once has one."""
+        solution = self.solution
+        if isinstance(solution, RoundSolution):
+            return trips_of_round(solution.problem, solution.plan, are_numbered=self.fleet.swap_s is not None)
+        return trips_of_plan(solution.problem, solution.plan, self.fleet.takeoff_interval_s)
+
+    @property
+    def left_out(self) -> tuple[int, ...]:
+        """Indices of the ponds that no trip visits."""
+        visited = {pond for trip in self.trips for pond in trip.ponds}
+        return tuple(pond for pond in range(len(self.farm.ponds)) if pond not in visited)
+
+    @property
+    def num_drones_flying(self) -> int:
+        """How many drones fly."""
+        return len({trip.drone for trip in self.trips})
+
+    @property
     def near_drones(self) -> tuple[int, int, float] | None:
         """A drone that flies out while another comes home nearer to its height than the layers promise, if any.
 
@@ -268,52 +374,38 @@ class FarmPlan:
         tuple or None
             Both drones, from 0, and the metres between their heights.
         """
-        layers, plan, starts_s = self.layers, self.solution.plan, self.takeoff_times_s
-        for out in range(len(plan.routes)):
-            out_end_s = starts_s[out] + float(plan.arrivals_s[out][0])
-            for home in range(len(plan.routes)):
-                apart_m = abs(layers.way_out_height_m(out) - layers.way_home_height_m(home))
-                home_start_s = starts_s[home] + float(plan.departures_s[home][-1])
-                is_together = starts_s[out] < self.back_times_s[home] and home_start_s < out_end_s
-                if out != home and apart_m < layers.spacing_m - 1e-9 and is_together:
-                    return out, home, apart_m
+        layers = self.layers
+        for out in self.trips:
+            out_end_s = float(out.times_s[0, 0])
+            for home in self.trips:
+                apart_m = abs(layers.way_out_height_m(out.drone) - layers.way_home_height_m(home.drone))
+                home_start_s = float(home.times_s[-1, 2])
+                is_together = out.departure_s < home.arrival_s and home_start_s < out_end_s
+                if out.drone != home.drone and apart_m < layers.spacing_m - 1e-9 and is_together:
+                    return out.drone, home.drone, apart_m
         return None
-
-    @property
-    def takeoff_times_s(self) -> tuple[float, ...]:
-        """When each drone takes off, in seconds after the first: some time apart, so that none meets another."""
-        return tuple(drone * self.fleet.takeoff_interval_s for drone in range(len(self.solution.plan.routes)))
-
-    @property
-    def back_times_s(self) -> tuple[float, ...]:
-        """When each drone is back and at rest, in seconds after the first take-off."""
-        durations_s = self.solution.plan.route_durations_s
-        return tuple(start_s + float(durations_s[drone]) for drone, start_s in enumerate(self.takeoff_times_s))
 
     @property
     def all_back_s(self) -> float:
         """When the last drone is back, in seconds after the first take-off."""
-        return max(self.back_times_s, default=0.0)
+        return max((trip.arrival_s for trip in self.trips), default=0.0)
+
+    def clock(self, time_s: float) -> str:
+        """Return a time of the round as people read it: by the clock where the start is known, else since the start."""
+        return clock_text(time_s) if self.fleet.start is None else clock_after(self.fleet.start, time_s)
 
     @property
     def battery_text(self) -> str:
-        """What a battery gives and what the hungriest route takes of it, in a sentence or two."""
-        fleet, most_j = self.fleet, float(self.solution.plan.route_energies_j.max(initial=0.0))
+        """What a battery gives and what the hungriest trip takes of it, in a sentence or two."""
+        fleet, most_j = self.fleet, max((trip.energy_j for trip in self.trips), default=0.0)
         usable_j, most = fleet.usable_energy_j, energy_text(most_j)
+        what = "trip" if fleet.swap_s is not None else "route"
         if not math.isfinite(usable_j):
-            return f"Flight time is unchecked: the fleet names no battery_wh. The hungriest route takes {most}."
+            return f"Flight time is unchecked: the fleet names no battery_wh. The hungriest {what} takes {most}."
         return (
             f"A battery gives {energy_text(usable_j)} above its reserve of {fleet.reserve_percent:g} %; "
-            f"the hungriest route takes {most}, {100 * most_j / usable_j:.0f} % of it."
+            f"the hungriest {what} takes {most}, {100 * most_j / usable_j:.0f} % of it."
         )
-
-    def energy_phases(self, drone: int) -> EnergyPhases:
-        """Return what a route takes, by phases; drones count from 0 here, as routes do."""
-        arguments = Arguments()
-        most = len(self.solution.plan.routes) - 1
-        arguments.whole("drone", drone, 0, most, f"give the index of a route, 0 to {most}")
-        arguments.check()
-        return EnergyPhases(*map(float, self.solution.plan.phase_energies_j[drone]))
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -346,21 +438,77 @@ class FarmPlan:
         return tuple(notes)
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the routes as a small map, and a row a drone."""
-        plan = self.solution.plan
+        """What a notebook shows: the trips as a small map, and a row a trip."""
         rows = [
-            f"<tr><td style='color:{route_colour(drone)}'>&#9632; {drone + 1}</td><td>{len(route)}</td>"
-            f"<td>{length_text(float(plan.route_lengths[drone]))}</td>"
-            f"<td>{duration_text(float(plan.route_durations_s[drone]))}</td>"
-            f"<td>{energy_text(float(plan.route_energies_j[drone]))}</td></tr>"
-            for drone, route in enumerate(plan.routes)
+            f"<tr><td style='color:{route_colour(trip.drone)}'>&#9632; {trip.drone + 1}</td><td>{len(trip.ponds)}</td>"
+            f"<td>{length_text(trip.length_m)}</td>"
+            f"<td>{duration_text(trip.duration_s)}</td>"
+            f"<td>{energy_text(trip.energy_j)}</td></tr>"
+            for trip in self.trips
         ]
         heads = "".join(f"<th>{head}</th>" for head in ("Drone", "Ponds", "Length", "Duration", "Energy"))
         broken = "".join(f"<li>{escape(violation.message)}</li>" for violation in self.violations)
         return (
             f"<b>{escape(self.farm.name)}</b>: {counted(len(self.farm.ponds), 'pond')}, "
-            f"{counted(len(plan.routes), 'route')}<br>{_map_svg(self.solution.problem, plan)}"
+            f"{counted(len(self.trips), self.trip_word)}<br>{_map_svg(self.solution.problem, self.trips)}"
             f"<table><tr>{heads}</tr>{''.join(rows)}</table>" + (f"<ul>{broken}</ul>" if broken else "")
+        )
+
+    @property
+    def trip_word(self) -> str:
+        """What a trip is called: a route, where a drone flies once."""
+        return "route" if self.fleet.swap_s is None else "trip"
+
+    def _round_in_words(self, violation: RoundViolation, units: Units) -> FarmViolation:
+        pond = None if violation.visit is None else pond_called(self.farm.ponds[violation.visit].id)
+        drone = None if violation.route is None else violation.route + 1
+        trip = None if violation.trip is None else violation.trip + 1
+        whose = f"drone {drone}" + (f" on trip {trip}" if trip is not None and self.fleet.swap_s is not None else "")
+        value, limit = violation.value or 0.0, violation.limit or 0.0
+        match violation.kind:
+            case "unserved":
+                told = {unserved.pond: unserved for unserved in self.unserved}.get(violation.visit or 0)
+                message = f"{pond} is not visited" + (f": {told.reason}" if told and told.reason else "")
+                remedy = "; or ".join(told.remedies) if told and told.remedies else "plan again"
+            case "repeated":
+                message, remedy = f"{pond} is visited {value:.0f} times", "plan again"
+            case "too_many_routes":
+                message = f"{counted(int(value), 'drone')} fly, the fleet has {limit:.0f}"
+                remedy = f"plan again, with {value:.0f} drones if they are there"
+            case "too_many_trips":
+                message = f"drone {drone} flies {value:.0f} trips, and the fleet names no swap_s"
+                remedy = "say swap_s, what changing a battery takes, or plan again"
+            case "too_many_samples":
+                message = f"{whose} samples {value:.0f} ponds, samples_per_trip is {limit:.0f}"
+                remedy = "plan again"
+            case "late":
+                message, remedy = (
+                    f"{pond} is sampled {duration_text(value)} too late for its time windows",
+                    "plan again",
+                )
+            case "too_slow":
+                message = f"{whose} is under way for {duration_text(value)}, a trip may take {duration_text(limit)}"
+                remedy = "plan again, or raise max_trip_duration_s"
+            case "too_long":
+                message = (
+                    f"{whose} flies {length_text(value, units)}, max_route_length_m is {length_text(limit, units)}"
+                )
+                remedy = "plan again, or raise the limit"
+            case "too_much_energy":
+                message = (
+                    f"{whose} needs {energy_text(value)}, its battery gives {energy_text(limit)} above the reserve"
+                )
+                remedy = "plan again"
+            case "no_way_home":
+                message = f"{whose} has {energy_text(value)} too little for the way home from {pond}"
+                remedy = "plan again"
+            case "after_the_end":
+                message = f"drone {drone} lands {duration_text(value)} after the end of the round"
+                remedy = "plan again with a later end, or more drones"
+            case _:
+                message, remedy = str(violation), "plan again"
+        return FarmViolation(
+            violation.kind, message, remedy, drone, violation.visit, violation.value, violation.limit, trip
         )
 
     def _in_words(self, violation: Violation, units: Units) -> FarmViolation:
@@ -433,7 +581,7 @@ _MAP_WIDTH = 420.0
 """Of the map in a notebook, in pixels."""
 
 
-def _map_svg(problem: Problem, plan: Plan) -> str:
+def _map_svg(problem: Problem, trips: Sequence[Trip]) -> str:
     """Routes as lines, north up; the depot is a square."""
     places = np.vstack([problem.depot, problem.ponds])
     west, south = places.min(axis=0)
@@ -444,9 +592,9 @@ def _map_svg(problem: Problem, plan: Plan) -> str:
         return f"{5 + scale * (position[0] - west):.1f},{5 + scale * (north - position[1]):.1f}"
 
     lines = []
-    for drone, route in enumerate(plan.routes):
-        path = " ".join(map(point, (problem.depot, *problem.ponds[route], problem.depot)))
-        lines.append(f"<polyline points='{path}' fill='none' stroke='{route_colour(drone)}' stroke-width='1.5'/>")
+    for trip in trips:
+        path = " ".join(map(point, (problem.depot, *problem.ponds[list(trip.ponds)], problem.depot)))
+        lines.append(f"<polyline points='{path}' fill='none' stroke='{route_colour(trip.drone)}' stroke-width='1.5'/>")
     x, _, y = point(problem.depot).partition(",")
     depot = f"<rect x='{float(x) - 4:.1f}' y='{float(y) - 4:.1f}' width='8' height='8' fill='gray'/>"
     width, height = scale * (east - west) + 10, scale * (north - south) + 10

@@ -19,6 +19,7 @@ from pondhop.cli.bench import bench
 from pondhop.cli.plan import generate_farm, plan
 from pondhop.cli.research import evaluate, generate, plot, solve
 from pondhop.cli.shared import EXIT_BUG, EXIT_INTERRUPTED, EXIT_INVALID_INPUT, print_faults
+from pondhop.cli.size import size
 from pondhop.cli.train import train_am
 from pondhop.documents.signals import SIGNALLED, STOPS
 from pondhop.errors import Fault, InvalidInput
@@ -107,7 +108,7 @@ def _pondhop(
     """
 
 
-for _command in (plan, solve, evaluate, plot, generate, generate_farm, train_am):
+for _command in (plan, size, solve, evaluate, plot, generate, generate_farm, train_am):
     app.command(no_args_is_help=True)(_command)
 
 

@@ -34,6 +34,13 @@ if TYPE_CHECKING:
     from pondhop.fleet import Fleet, SamplingStyle
 
 
+WindOption = Annotated[
+    str | None, typer.Option(metavar="SPEED@FROM", help="Wind in m/s and where it blows from in degrees, as 4@225.")
+]
+StartOption = Annotated[str | None, typer.Option(metavar="HH:MM", help="When the first drone takes off, by the clock.")]
+ByOption = Annotated[str | None, typer.Option(metavar="HH:MM", help="When all drones must be back, by the clock.")]
+
+
 @with_planning_options
 def plan(
     farm: Annotated[
@@ -62,6 +69,9 @@ def plan(
         ),
     ] = None,
     sampling: Annotated[Literal["hover-dip", "splashdown"] | None, typer.Option(help="How a pond is sampled.")] = None,
+    wind: WindOption = None,
+    start: StartOption = None,
+    by: ByOption = None,
     figure: Annotated[
         bool | None,
         typer.Option("--figure/--no-figure", help="Draw the plan (PNG and SVG); if not said, where it can be."),
@@ -76,17 +86,23 @@ def plan(
     - `pondhop plan farm.geojson --drones 3 -o tonight`
     - `pondhop plan farm.kml --drones 3 --depot -89.21,37.70 -o tonight`
     - `pondhop plan farm.gpkg --fleet fleet.toml --sampling splashdown --no-figure -o tonight`
+    - `pondhop plan farm.geojson --fleet fleet.toml --wind 4@225 --start 22:00 --by 05:30 -o tonight`
+
+    Where the fleet changes batteries (`swap_s`), there is wind, ponds have time windows, or the round has an end, each
+    drone flies trips, one a battery.
 
     Everything wrong with the farm file is reported at once, each fault with its place and its remedy.
     """
     from pondhop import outputs, planners
     from pondhop.farm.read import read_farm
+    from pondhop.fleet import CALM, parse_wind
 
     if figure:
         require_matplotlib()
     is_drawn = has_matplotlib() if figure is None else figure
     outputs.check_folder(output)
-    chosen_fleet = _fleet(drones, fleet, sampling)
+    chosen_fleet = timed_fleet(chosen_by(drones, fleet, sampling), start, by)
+    blowing = parse_wind(wind) if wind is not None else CALM
     with progress("Planning", total=4 if is_drawn else 3) as advance:
         read = read_farm(
             farm,
@@ -95,7 +111,7 @@ def plan(
             accept=accept or (),
         )
         advance()
-        farm_plan = planners.plan(read, chosen_fleet, progress=search_progress(advance), **options)
+        farm_plan = planners.plan(read, chosen_fleet, wind=blowing, progress=search_progress(advance), **options)
         advance()
         written = outputs.write_outputs(output, farm_plan, has_figure=is_drawn, units=units)
         advance(size=2.0 if is_drawn else 1.0)
@@ -147,7 +163,12 @@ def generate_farm(
     typer.echo(json.dumps(message) if as_json else f"Written to {output}: {counted(len(farm.ponds), 'pond')}")
 
 
-def _fleet(num_drones: int | None, path: Path | None, sampling: SamplingStyle | None) -> Fleet:
+def timed_fleet(fleet: Fleet, start: str | None, by: str | None) -> Fleet:
+    """Return the fleet with the times of the command line in place of its own."""
+    return replace(fleet, start=start or fleet.start, end=by or fleet.end)
+
+
+def chosen_by(num_drones: int | None, path: Path | None, sampling: SamplingStyle | None) -> Fleet:
     """Return the fleet of the options; one of ``--drones`` and ``--fleet`` says how many drones there are."""
     from pondhop.fleet import Fleet, read_fleet
 

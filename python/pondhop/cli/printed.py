@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from statistics import fmean
 
 from rich.console import Console
 from rich.table import Table
 
+from pondhop.farm.features import listed
 from pondhop.files.routes_json import Judgement
 from pondhop.planners import LIMIT_KINDS
 from pondhop.solution import FarmPlan, Solution
 from pondhop.units import (
     Units,
-    clock_text,
     counted,
     duration_text,
     energy_text,
@@ -21,6 +22,9 @@ from pondhop.units import (
     length_text,
     speed_text,
 )
+
+LEAST_WAIT_S = 0.5
+"""A wait that is told."""
 
 MAX_ROWS = 20
 """Of a table with a row a farm; beyond it only the averages are printed."""
@@ -30,15 +34,22 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
     """Print the routes of a farm's plan, what they take, what they rest on and how good they are."""
     console = Console(highlight=False, markup=False)
     solution, farm = farm_plan.solution, farm_plan.farm
-    plan = solution.plan
-    ponds, routes = counted(len(farm.ponds), "pond"), counted(len(plan.routes), "route")
-    console.print(f"{farm.name}: {ponds}, {routes}", style="bold")
-    console.print(_routes_table(farm_plan, units))
-    if plan.route_energies_j.any():
+    ponds, trips = counted(len(farm.ponds), "pond"), counted(len(farm_plan.trips), farm_plan.trip_word)
+    drones = "" if farm_plan.fleet.swap_s is None else f" of {counted(farm_plan.num_drones_flying, 'drone')}"
+    console.print(f"{farm.name}: {ponds}, {trips}{drones}", style="bold")
+    console.print(_trips_table(farm_plan, units) if farm_plan.is_round else _routes_table(farm_plan, units))
+    if farm_plan.is_round:
+        console.print(farm_plan.battery_text)
+        if farm_plan.wind.speed_m_s:
+            console.print(f"Planned for {farm_plan.wind.told(units)}.")
+    elif any(trip.energy_j for trip in farm_plan.trips):
         console.print(_energy_table(farm_plan))
         console.print(farm_plan.battery_text)
+    _print_left_out(console, farm_plan)
     console.print(f"All drones are back {duration_text(farm_plan.all_back_s)} after the first take-off.")
     bound = f"No plan is done with its longest route in less than {duration_text(solution.lower_bound_s)}"
+    if farm_plan.is_round:
+        bound = f"No plan that visits all ponds is done in less than {duration_text(solution.lower_bound_s)}"
     if solution.gap_s_percent is not None:
         bound += f": this one takes at most {_gap(solution.gap_s_percent)} longer than the best there is"
     console.print(f"{bound}.")
@@ -52,6 +63,18 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
         )
     console.print(f"Planner {solution.planner}, seed {solution.seed}, {duration_of_planning(solution.elapsed_s)}.")
     _print_assumptions(console, farm_plan, units)
+
+
+def _print_left_out(console: Console, farm_plan: FarmPlan) -> None:
+    """Print the ponds that a round leaves out, those of the same reason together, and what would help."""
+    groups: dict[tuple[str, tuple[str, ...]], list[int]] = {}
+    for unserved in farm_plan.unserved:
+        groups.setdefault((unserved.reason, unserved.remedies), []).append(unserved.pond)
+    for (reason, remedies), ponds in groups.items():
+        names = listed([farm_plan.farm.ponds[pond].id for pond in ponds])
+        console.print(f"Left out: {counted(len(ponds), 'pond')} ({names}): {reason}.", style="bold red")
+        if remedies:
+            console.print(f"What would help: {'; or '.join(remedies)}.")
 
 
 def print_violations(farm_plan: FarmPlan, units: Units = "metric") -> None:
@@ -73,41 +96,77 @@ def _gap(gap_percent: float) -> str:
 
 def _routes_table(farm_plan: FarmPlan, units: Units) -> Table:
     """A row a drone; the one that takes longest is in bold and named below, so that no row mixes two drones."""
-    plan = farm_plan.solution.plan
+    trips = farm_plan.trips
     table = Table()
     for heading in ("Drone", "Ponds", "Length", "Duration", "Takes off", "Back"):
         table.add_column(heading, justify="right")
-    longest = int(plan.route_durations_s.argmax()) if plan.routes else None
-    for drone, route in enumerate(plan.routes):
+    longest = max(trips, key=lambda trip: trip.duration_s, default=None)
+    for trip in trips:
         table.add_row(
-            str(drone + 1),
-            str(len(route)),
-            length_text(float(plan.route_lengths[drone]), units),
-            duration_text(float(plan.route_durations_s[drone])),
-            clock_text(farm_plan.takeoff_times_s[drone]),
-            clock_text(farm_plan.back_times_s[drone]),
-            style="bold" if drone == longest else None,
+            str(trip.drone + 1),
+            str(len(trip.ponds)),
+            length_text(trip.length_m, units),
+            duration_text(trip.duration_s),
+            farm_plan.clock(trip.departure_s),
+            farm_plan.clock(trip.arrival_s),
+            style="bold" if trip is longest else None,
         )
     table.add_section()
-    num_ponds = sum(map(len, plan.routes))
-    total_s = duration_text(float(plan.route_durations_s.sum()))
-    table.add_row("total", str(num_ponds), length_text(plan.total_length, units), total_s, "", "")
+    num_ponds = sum(len(trip.ponds) for trip in trips)
+    length, total_s = sum(trip.length_m for trip in trips), sum(trip.duration_s for trip in trips)
+    table.add_row("total", str(num_ponds), length_text(length, units), duration_text(total_s), "", "")
     if longest is not None:
-        table.caption = f"bold: drone {longest + 1} takes longest"
+        table.caption = f"bold: drone {longest.drone + 1} takes longest"
+    return table
+
+
+def _trips_table(farm_plan: FarmPlan, units: Units) -> Table:
+    """A row a trip, drone by drone; the last to land is in bold."""
+    trips, usable_j = farm_plan.trips, farm_plan.fleet.usable_energy_j
+    table = Table()
+    has_waits = any(trip.waits_s > LEAST_WAIT_S for trip in trips)
+    for heading in ("Drone", "Trip", "Ponds", "Length", "Takes off", "Back", "Energy", "Spare"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    if has_waits:
+        table.add_column("Waits", justify="right", no_wrap=True)
+    last = max(trips, key=lambda trip: trip.arrival_s, default=None)
+    drone = 0
+    for trip in trips:
+        if trip.drone != drone:
+            table.add_section()
+            drone = trip.drone
+        # What is left above the reserve if the drone flies home from its worst place.
+        spare_j = float((usable_j - trip.energies_j.sum(axis=1)).min())
+        table.add_row(
+            str(trip.drone + 1),
+            str(trip.number + 1),
+            str(len(trip.ponds)),
+            length_text(trip.length_m, units),
+            farm_plan.clock(trip.departure_s),
+            farm_plan.clock(trip.arrival_s),
+            energy_text(trip.energy_j),
+            energy_text(spare_j) if math.isfinite(spare_j) else "unknown",
+            *([duration_text(trip.waits_s) if trip.waits_s > LEAST_WAIT_S else ""] if has_waits else []),
+            style="bold" if trip is last else None,
+        )
+    table.add_section()
+    num_ponds, length = sum(len(trip.ponds) for trip in trips), sum(trip.length_m for trip in trips)
+    energy = energy_text(sum(trip.energy_j for trip in trips))
+    table.add_row("total", str(len(trips)), str(num_ponds), length_text(length, units), "", "", energy)
+    table.caption = "bold: the last to land; spare: above the reserve, flying home from the worst place"
     return table
 
 
 def _energy_table(farm_plan: FarmPlan) -> Table:
-    plan = farm_plan.solution.plan
     usable_j = farm_plan.solution.problem.energy.usable_j
     table = Table()
     for heading in ("Drone", "Take-off", "Legs", "Sampling", "Way home", "Energy"):
         table.add_column(heading, justify="right")
-    for drone in range(len(plan.routes)):
-        phases = farm_plan.energy_phases(drone)
+    for trip in farm_plan.trips:
+        phases = trip.phases
         is_over = phases.total_j > usable_j
         table.add_row(
-            str(drone + 1),
+            str(trip.drone + 1),
             *map(energy_text, (phases.takeoff_j, phases.legs_j, phases.sampling_j, phases.way_home_j, phases.total_j)),
             style="bold red" if is_over else None,
         )

@@ -80,9 +80,9 @@ def solve(
 
     Every pond is in exactly one route, and there are at most `--routes` of them.
 
-    Of a round (time windows, loads, releases, trips) the last landing is minimised, or the total length. Customers count from 0 in the
-    order of the file; where it has trips, a route is a list of them. Its object has `index`, `planner`, `seed`,
-    `elapsed_s`, `routes`, `total_length`, `is_feasible` and `violations`.
+    Of a round (time windows, loads, releases, trips) the last landing is minimised, or the total length. Customers
+    count from 0 in the order of the file; where it has trips, a route is a list of them. Its object has `index`,
+    `planner`, `seed`, `elapsed_s`, `routes`, `total_length`, `makespan`, `is_feasible` and `violations`.
     """
     from pondhop.rounds import is_round_file
 

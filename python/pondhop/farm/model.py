@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pondhop._core import LocalFrame, Problem
+from pondhop._core import LocalFrame, Problem, Round
 from pondhop.arguments import Arguments
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.features import listed
 from pondhop.farm.shapes import hole_around
 from pondhop.farm.words import pond_called
-from pondhop.fleet import Fleet
+from pondhop.fleet import CALM, Fleet, Wind
+from pondhop.fleet.clock import windows_after
 from pondhop.places import Area, LonLat
 
 _ROUNDING_S = 1e-6
@@ -34,12 +35,18 @@ class Pond:
         Rings of the polygon, the outer one first, each closed; empty for a pond given as a point.
     service_s
         Time on station if it differs from that of the fleet.
+    time_windows
+        Pairs of clock times, as ("22:30", "23:30"), between which sampling may begin; at any time if there are none.
+    priority
+        What sampling it is worth beside other ponds, where a fleet cannot do all.
     """
 
     id: str
     sampling_point: LonLat
     outline: Area = ()
     service_s: float | None = None
+    time_windows: tuple[tuple[str, str], ...] = ()
+    priority: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -146,6 +153,62 @@ class Farm:
             max_length_m=np.inf if fleet.max_route_length_m is None else fleet.max_route_length_m,
             max_duration_s=np.inf if fleet.max_route_duration_s is None else fleet.max_route_duration_s,
         )
+
+    def to_round(self, fleet: Fleet, wind: Wind = CALM, *, are_layers_stacked: bool = True) -> Round:
+        """The planning task with all that `to_problem` leaves out: trips, windows, wind, and the end of the round.
+
+        Times count from the first take-off of the round.
+
+        Parameters
+        ----------
+        fleet, are_layers_stacked
+            As of `to_problem`.
+        wind
+            How strong it blows and where from.
+
+        Raises
+        ------
+        InvalidInput
+            As `to_problem`; if drones make no way against the wind; if ponds have windows, and nothing says when the
+            round starts.
+        """
+        problem = self.to_problem(fleet, are_layers_stacked=are_layers_stacked)
+        timed = [pond.id for pond in self.ponds if pond.time_windows]
+        if timed and fleet.start is None:
+            message = f"ponds have time windows ({listed(timed)}), and nothing says when the round starts"
+            action = 'give start = "22:00" in the fleet file, or --start 22:00 on the command line'
+            raise InvalidInput([Fault("start", message, action)])
+        if fleet.max_trip_duration_s is not None:
+            problem = problem.replace(max_duration_s=fleet.max_trip_duration_s)
+        _check_wind(fleet, wind)
+        return Round(
+            problem,
+            windows=[windows_after(fleet.start or "00:00", pond.time_windows) for pond in self.ponds]
+            if timed
+            else None,
+            priorities=[pond.priority for pond in self.ponds],
+            loads=None if fleet.samples_per_trip is None else np.ones(len(self.ponds)),
+            capacity=np.inf if fleet.samples_per_trip is None else fleet.samples_per_trip,
+            shift_s=(0.0, fleet.span_s),
+            takeoff_interval_s=fleet.takeoff_interval_s,
+            turnaround_s=fleet.swap_s,
+            num_pads=fleet.num_pads,
+            wind_m_s=wind.velocity_m_s,
+            max_airspeed_m_s=fleet.max_airspeed_m_s,
+            drag_power_w_per_m3_s3=fleet.drag_power_w_per_m3_s3,
+        )
+
+
+def _check_wind(fleet: Fleet, wind: Wind) -> None:
+    if wind.speed_m_s < fleet.max_airspeed_m_s:
+        return
+    message = (
+        f"it blows with {wind.speed_m_s:g} m/s, and the drones fly at most {fleet.max_airspeed_m_s:g} m/s through the "
+        "air (max_airspeed_m_s): none would come back against it"
+    )
+    raise InvalidInput(
+        [Fault("wind", message, "wait for less wind, or say max_airspeed_m_s if your drones are faster")]
+    )
 
 
 def _check_service(ponds: Sequence[Pond], fleet: Fleet) -> None:

@@ -36,7 +36,19 @@ _PROGRAM_COLUMNS = ("@id", "fid", "osm_id", "osm_way_id", "objectid", "gid", "og
 """Columns that programs fill in: they tell ponds apart, but nobody calls them so."""
 
 _NO_NAME_COLUMNS = frozenset(
-    map(normal_name, (*ROLE_COLUMNS, *KIND_COLUMNS, *OSM_KEYS, *_PROGRAM_COLUMNS, "service_s", "sampling_point"))
+    map(
+        normal_name,
+        (
+            *ROLE_COLUMNS,
+            *KIND_COLUMNS,
+            *OSM_KEYS,
+            *_PROGRAM_COLUMNS,
+            "service_s",
+            "sampling_point",
+            "time_windows",
+            "priority",
+        ),
+    )
 )
 """Columns that name no pond, whatever they hold."""
 

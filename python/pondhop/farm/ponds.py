@@ -8,20 +8,18 @@ from pondhop.errors import Fault
 from pondhop.farm import shapes
 from pondhop.farm.columns import parted_pair
 from pondhop.farm.coordinates import MAX_LATITUDE_DEG, exchanged
-from pondhop.farm.degrees import number_given, plain_number
+from pondhop.farm.degrees import plain_number
 from pondhop.farm.features import Feature, Source, left_out_note, listed, number_of, shortened
 from pondhop.farm.hints import ROLE_COLUMNS
 from pondhop.farm.neighbourhoods import MAX_GAP_M
 from pondhop.farm.roles import Sorted
+from pondhop.farm.tasks import Task, read_task
 from pondhop.farm.words import Meaning, meanings
 from pondhop.places import Area, LonLat, distance_m, wrapped_longitude
 from pondhop.units import counted
 
 MAX_SAMPLING_OFFSET_M = 1_000.0
 """A sampling point further outside its pond than this is a typing error, not a shore."""
-
-MAX_SERVICE_S = 86_400.0
-"""Nobody waits for more than a day at a pond."""
 
 DWARFED_SHARE = 0.05
 """A part of a pond below this share of the largest is a corner of it, not a pond of its own."""
@@ -45,8 +43,8 @@ class Draft:
         Valid and closed; empty for a pond given as a point.
     sampling_point
         What the file says, or a place well inside.
-    service_s
-        Seconds on station, if the file says them.
+    task
+        What the file says of sampling it.
     part
         Which of several ponds of its feature it is, from 1; 0 if it is the only one.
     id
@@ -58,7 +56,7 @@ class Draft:
     feature: Feature
     outline: Area
     sampling_point: LonLat
-    service_s: float | None
+    task: Task
     part: int = 0
     id: str = ""
     area_m2: float = 0.0
@@ -95,7 +93,7 @@ def read_ponds(told: Sorted, source: Source) -> list[Draft]:
 def _from_outlines(feature: Feature, source: Source) -> list[Draft]:
     num_faults = len(source.faults)
     sampling_point = _sampling_point(feature, source)
-    service_s = _service_s(feature, source)
+    task = read_task(feature, source)
     areas = areas_of(feature, "a pond", source, may_mend=True)
     for area in areas:
         extent_m = shapes.extent_m(area)
@@ -122,7 +120,7 @@ def _from_outlines(feature: Feature, source: Source) -> list[Draft]:
             feature,
             area,
             sampling_point or shapes.point_inside(area),
-            service_s,
+            task,
             0 if is_single else number,
             area_m2=shapes.area_m2(area),
         )
@@ -363,28 +361,16 @@ def _use_pin(feature: Feature, owner: Draft, labels: list[Feature], source: Sour
 def _from_point(feature: Feature, source: Source) -> list[Draft]:
     num_faults = len(source.faults)
     sampling_point = _sampling_point(feature, source)
-    service_s = _service_s(feature, source)
+    task = read_task(feature, source)
     if len(source.faults) > num_faults:
         return []
     points = list(dict.fromkeys(feature.geometry.points))
     if len(points) == 1:
-        return [Draft(feature, (), sampling_point or points[0], service_s)]
+        return [Draft(feature, (), sampling_point or points[0], task)]
     source.notes.add(
         f"{feature.told()}: its {len(points)} points are {len(points)} ponds, numbered.", kind="ponds of parts"
     )
-    return [Draft(feature, (), point, service_s, number) for number, point in enumerate(points, start=1)]
-
-
-def _service_s(feature: Feature, source: Source) -> float | None:
-    found = feature.find("service_s")
-    if found is None:
-        return None
-    number = number_given(found[1])
-    if number is None or not 0.0 <= number <= MAX_SERVICE_S:
-        place = feature.property_place.format(found[0])
-        message = f"{shortened(str(found[1]))!r} is no time on station"
-        source.faults.append(Fault(place, message, f"give seconds as a number, 0 to {MAX_SERVICE_S:.0f}"))
-    return number
+    return [Draft(feature, (), point, task, number) for number, point in enumerate(points, start=1)]
 
 
 def _sampling_point(feature: Feature, source: Source) -> LonLat | None:

@@ -119,7 +119,17 @@ def read_farm(
     known = set(ids)
     return Farm(
         clean_text(source.name) or "farm",
-        tuple(Pond(draft.id, draft.sampling_point, draft.outline, draft.service_s) for draft in drafts),
+        tuple(
+            Pond(
+                draft.id,
+                draft.sampling_point,
+                draft.outline,
+                draft.task.service_s,
+                draft.task.time_windows,
+                draft.task.priority,
+            )
+            for draft in drafts
+        ),
         found_depot,
         tuple(stations),
         tuple(no_fly),

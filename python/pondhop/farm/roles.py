@@ -37,7 +37,16 @@ from pondhop.units import counted
 ROLES = ("pond", "depot", "station", "no_fly", "fence", "other")
 """What a feature can be, in the property ``role``; the first is the default."""
 
-_DECLARING_COLUMNS = ("service_s", "sampling_point", "pond_id", "pond", "pond_name", "pond_no", "pond_number")
+_DECLARING_COLUMNS = (
+    "service_s",
+    "time_windows",
+    "sampling_point",
+    "pond_id",
+    "pond",
+    "pond_name",
+    "pond_no",
+    "pond_number",
+)
 
 MIN_SERIES = 2
 """Numbered points of one word such as station that make a series."""

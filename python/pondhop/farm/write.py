@@ -31,7 +31,7 @@ def write_farm(path: str | Path, farm: Farm) -> None:
     arguments.kind("farm", farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
     arguments.check()
     # The role is written for ponds, too: without it a pond given as a point would be a label in one that is an outline.
-    features = [_feature_json({"id": pond.id, "role": "pond"} | _service_json(pond), pond) for pond in farm.ponds]
+    features = [_feature_json({"id": pond.id, "role": "pond"} | _task_json(pond), pond) for pond in farm.ponds]
     features.append(_point_json({"role": "depot"}, farm.depot))
     features.extend(_point_json({"role": "station"}, station) for station in farm.stations)
     features.extend(_polygon_json({"role": "no_fly"}, area) for area in farm.no_fly)
@@ -41,8 +41,11 @@ def write_farm(path: str | Path, farm: Farm) -> None:
     write_all({Path(path): f"{head}{lines}\n]}}\n"})
 
 
-def _service_json(pond: Pond) -> dict[str, object]:
-    return {} if pond.service_s is None else {"service_s": pond.service_s}
+def _task_json(pond: Pond) -> dict[str, object]:
+    task: dict[str, object] = {} if pond.service_s is None else {"service_s": pond.service_s}
+    if pond.time_windows:
+        task["time_windows"] = [list(window) for window in pond.time_windows]
+    return task if pond.priority == 1.0 else {**task, "priority": pond.priority}
 
 
 def _feature_json(properties: dict[str, object], pond: Pond) -> dict[str, object]:

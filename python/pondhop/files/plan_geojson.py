@@ -12,6 +12,7 @@ from pondhop.documents.atomic import write_all
 from pondhop.farm.words import pond_called
 from pondhop.palette import route_colour
 from pondhop.solution import FarmPlan, check_written
+from pondhop.trips import Trip
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 
@@ -43,41 +44,47 @@ def write_plan_geojson(path: str | os.PathLike[str], farm_plan: FarmPlan) -> Non
 
 
 def _features(farm_plan: FarmPlan) -> Iterator[dict[str, Any]]:
-    farm, plan = farm_plan.farm, farm_plan.solution.plan
+    farm = farm_plan.farm
     yield _feature("Point", farm.depot, {"role": "depot", "title": "Depot", "marker-symbol": "airfield"})
-    for index, route in enumerate(plan.routes):
-        colour = route_colour(index)
-        positions = [farm.depot, *(farm.ponds[pond].sampling_point for pond in route), farm.depot]
+    for trip in farm_plan.trips:
+        colour = route_colour(trip.drone)
+        positions = [farm.depot, *(farm.ponds[pond].sampling_point for pond in trip.ponds), farm.depot]
         properties = {
             "role": "route",
-            "title": f"Drone {index + 1}",
-            "drone": index + 1,
-            "num_ponds": len(route),
-            "length_m": round(float(plan.route_lengths[index]), 1),
-            "duration_s": round(float(plan.route_durations_s[index]), 1),
-            "departure_s": round(farm_plan.takeoff_times_s[index], 1),
-            "energy_wh": round(float(plan.route_energies_j[index]) / JOULES_PER_WATT_HOUR, 1),
+            "title": _title(farm_plan, trip),
+            "drone": trip.drone + 1,
+            **({"trip": trip.number + 1} if farm_plan.is_round else {}),
+            "num_ponds": len(trip.ponds),
+            "length_m": round(trip.length_m, 1),
+            "duration_s": round(trip.duration_s, 1),
+            "departure_s": round(trip.departure_s, 1),
+            "energy_wh": round(trip.energy_j / JOULES_PER_WATT_HOUR, 1),
             "stroke": colour,
             "stroke-width": 3,
             "stroke-opacity": 0.9,
         }
         yield _feature("LineString", positions, properties)
-    for index, route in enumerate(plan.routes):
-        start_s = farm_plan.takeoff_times_s[index]
-        for order, pond in enumerate(route):
+    for trip in farm_plan.trips:
+        for order, pond in enumerate(trip.ponds):
+            arrival_s, _, departure_s = map(float, trip.times_s[order])
             properties = {
                 "role": "stop",
-                "title": f"Drone {index + 1}, stop {order + 1}: {pond_called(farm.ponds[pond].id)}",
-                "drone": index + 1,
+                "title": f"{_title(farm_plan, trip)}, stop {order + 1}: {pond_called(farm.ponds[pond].id)}",
+                "drone": trip.drone + 1,
+                **({"trip": trip.number + 1} if farm_plan.is_round else {}),
                 "order": order + 1,
                 "pond": pond,
                 "id": farm.ponds[pond].id,
-                "arrival_s": round(start_s + float(plan.arrivals_s[index][order]), 1),
-                "departure_s": round(start_s + float(plan.departures_s[index][order]), 1),
-                "marker-color": route_colour(index),
+                "arrival_s": round(arrival_s, 1),
+                "departure_s": round(departure_s, 1),
+                "marker-color": route_colour(trip.drone),
                 "marker-size": "small",
             }
             yield _feature("Point", farm.ponds[pond].sampling_point, properties)
+
+
+def _title(farm_plan: FarmPlan, trip: Trip) -> str:
+    return f"Drone {trip.drone + 1}" + (f", trip {trip.number + 1}" if farm_plan.is_round else "")
 
 
 def _feature(kind: str, coordinates: Any, properties: Mapping[str, Any]) -> dict[str, Any]:

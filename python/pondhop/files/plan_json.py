@@ -11,13 +11,13 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import chain, repeat
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from pondhop._core import Problem, Separation, __version__, evaluate, separation
+from pondhop._core import Separation, __version__, evaluate, evaluate_round, separation
 from pondhop.arguments import checked_path
 from pondhop.documents.atomic import write_all
 from pondhop.documents.schemas import check_schema, read_json
@@ -26,9 +26,10 @@ from pondhop.farm.model import Doubt, Farm
 from pondhop.files import plan_json_1
 from pondhop.files.compared import differences, unknown_ponds
 from pondhop.files.plan_parts import fleet_of, read_farm_object
-from pondhop.fleet import Fleet
+from pondhop.fleet import Fleet, Wind
 from pondhop.places import Ring
-from pondhop.solution import FarmPlan, FarmViolation, Solution, check_written
+from pondhop.solution import FarmPlan, FarmViolation, RoundSolution, Solution, Unserved, check_written
+from pondhop.trips import Trip
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 SCHEMA = "pondhop-plan/2"
@@ -76,6 +77,17 @@ FLEET_KEYS = (
     "water_power_w",
 )
 """Fields of a fleet in the file, each a number, a word or null; its assumptions stand beside them as a list."""
+
+ROUND_KEYS = (
+    "max_airspeed_m_s",
+    "swap_s",
+    "num_pads",
+    "max_trip_duration_s",
+    "samples_per_trip",
+    "start",
+    "end",
+)
+"""Fields of a fleet that only files of rounds hold: with trips, windows, wind or an end."""
 
 _DEPOT = "depot"
 
@@ -132,6 +144,19 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
     if isinstance(content, dict) and content.get("schema") == plan_json_1.SCHEMA:
         return plan_json_1.farm_plan(content)
     check_schema(content, "plan-2")
+    derived = _derived_round(content) if "wind" in content else _derived(content)
+    kinds = {violation.kind for violation in derived.violations}
+    obstacles = tuple(_violation(violation) for violation in content["violations"] if violation["kind"] not in kinds)
+    farm_plan = replace(derived, obstacles=obstacles)
+    # All numbers of a plan follow from its routes, so what the file should hold is what we would write.
+    faults = list(differences("", _without_words(content), _without_words(_plan_object(farm_plan))))
+    if faults:
+        raise InvalidInput(faults)
+    return farm_plan
+
+
+def _derived(content: Mapping[str, Any]) -> FarmPlan:
+    """Return the plan of one route a drone that the routes of a file are, without what stands in its way."""
     farm, fleet = _farm(content["farm"]), _fleet(content["fleet"])
     routes = [[int(stop["pond"]) for trip in route["trips"] for stop in trip["stops"]] for route in content["routes"]]
     unknown = list(unknown_ponds(routes, len(farm.ponds), "routes[{route}].trips[0].stops[{order}].pond"))
@@ -150,33 +175,69 @@ def read_plan_json(path: str | os.PathLike[str]) -> FarmPlan:
         reason=content["reason"],
         known_lower_bound_s=content["lower_bound_s"],
     )
-    derived = FarmPlan(
+    return FarmPlan(
         farm,
         fleet,
         solution,
         num_drones_needed=content["num_drones_needed"],
         are_layers_stacked=are_layers_stacked,
     )
-    kinds = {violation.kind for violation in derived.violations}
-    obstacles = tuple(_violation(violation) for violation in content["violations"] if violation["kind"] not in kinds)
-    farm_plan = replace(derived, obstacles=obstacles)
-    # All numbers of a plan follow from its routes, so what the file should hold is what we would write.
-    faults = list(differences("", _without_words(content), _without_words(_plan_object(farm_plan))))
-    if faults:
-        raise InvalidInput(faults)
-    return farm_plan
+
+
+def _derived_round(content: Mapping[str, Any]) -> FarmPlan:
+    """Return the plan of a round that the trips of a file are, without what stands in its way."""
+    farm, fleet = _farm(content["farm"]), _fleet(content["fleet"])
+    wind = Wind(content["wind"]["speed_m_s"], content["wind"]["from_deg"])
+    routes: list[list[list[int]]] = [[] for _ in range(max((route["drone"] for route in content["routes"]), default=0))]
+    for route in content["routes"]:
+        routes[route["drone"] - 1] = [[int(stop["pond"]) for stop in trip["stops"]] for trip in route["trips"]]
+    unknown = [
+        fault
+        for index, route in enumerate(content["routes"])
+        for fault in unknown_ponds(
+            routes[route["drone"] - 1],
+            len(farm.ponds),
+            f"routes[{index}].trips[{{route}}].stops[{{order}}].pond",
+        )
+    ]
+    if unknown:
+        raise InvalidInput(unknown)
+    are_layers_stacked = content.get("are_layers_stacked", False)
+    task = farm.to_round(fleet, wind, are_layers_stacked=are_layers_stacked)
+    solution = RoundSolution(
+        round=task,
+        problem=farm.to_problem(fleet, are_layers_stacked=are_layers_stacked),
+        plan=evaluate_round(task, routes),
+        planner=content["planner"],
+        seed=content["seed"],
+        elapsed_s=0.0,
+        is_interrupted=content["is_interrupted"],
+        reason=content["reason"],
+        known_lower_bound_s=content["lower_bound_s"],
+    )
+    return FarmPlan(
+        farm,
+        fleet,
+        solution,
+        are_layers_stacked=are_layers_stacked,
+        wind=wind,
+        unserved=tuple(
+            Unserved(unserved["pond"], unserved["reason"], tuple(unserved["remedies"]))
+            for unserved in content["unserved"]
+        ),
+    )
 
 
 def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
-    farm, solution = farm_plan.farm, farm_plan.solution
-    plan = solution.plan
-    # What the way home from each pond takes in the lowest layer, landing included.
-    energies_home_j = [float(energies_j[-1]) for energies_j in solution.alone.leg_energies_j]
+    farm, solution, trips = farm_plan.farm, farm_plan.solution, farm_plan.trips
+    lengths_m, energies_j = [trip.length_m for trip in trips], [trip.energy_j for trip in trips]
+    told = {unserved.pond: unserved for unserved in farm_plan.unserved}
     return {
         "schema": SCHEMA,
         "pondhop_version": __version__,
-        "farm": _farm_object(farm),
-        "fleet": _fleet_object(farm_plan.fleet),
+        "farm": _farm_object(farm, has_times=farm_plan.is_round),
+        "fleet": _fleet_object(farm_plan.fleet, is_of_round=farm_plan.is_round),
+        **({"wind": _wind_object(farm_plan.wind)} if farm_plan.is_round else {}),
         "planner": solution.planner,
         "seed": solution.seed,
         "reason": solution.reason,
@@ -186,18 +247,18 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
         "separation": solution.separation and _separation_object(solution.separation),
         "summary": {
             "num_ponds": len(farm.ponds),
-            "num_routes": len(plan.routes),
-            "num_unserved": len(plan.unserved),
-            "makespan_s": plan.makespan_s,
+            "num_routes": farm_plan.num_drones_flying,
+            **({"num_trips": len(trips)} if farm_plan.is_round else {}),
+            "num_unserved": len(farm_plan.left_out),
+            "makespan_s": solution.plan.makespan_s,
             "all_back_s": farm_plan.all_back_s,
-            "max_route_length_m": plan.max_route_length,
-            "total_length_m": plan.total_length,
-            "total_energy_wh": float(plan.route_energies_j.sum()) / JOULES_PER_WATT_HOUR,
+            "max_route_length_m": _longest_m(farm_plan),
+            "total_length_m": float(sum(lengths_m)),
+            "total_energy_wh": float(sum(energies_j)) / JOULES_PER_WATT_HOUR,
             "is_feasible": farm_plan.is_feasible,
         },
         "routes": [
-            _route_object(farm_plan, index, [energy_j + layer_j for energy_j in energies_home_j])
-            for index, layer_j in zip(range(len(plan.routes)), _layers_home_j(solution.problem), strict=False)
+            _route_object(farm_plan, drone, list(own)) for drone, own in groupby(trips, key=lambda trip: trip.drone)
         ],
         "violations": [_violation_object(farm, violation) for violation in farm_plan.violations],
         "num_drones_needed": farm_plan.num_drones_needed,
@@ -206,16 +267,26 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
             {
                 "pond": pond,
                 "id": farm.ponds[pond].id,
-                "reason": "no route visits it",
-                "remedies": ["plan again"],
+                "reason": told[pond].reason if pond in told else "no route visits it",
+                "remedies": list(told[pond].remedies) if pond in told else ["plan again"],
             }
-            for pond in plan.unserved
+            for pond in farm_plan.left_out
         ],
         "notes": list(farm_plan.notes),
     }
 
 
-def _farm_object(farm: Farm) -> dict[str, Any]:
+def _longest_m(farm_plan: FarmPlan) -> float:
+    """Return the length of the longest route: of all trips of one drone."""
+    by_drone = groupby(farm_plan.trips, key=lambda trip: trip.drone)
+    return max((sum(trip.length_m for trip in own) for _, own in by_drone), default=0.0)
+
+
+def _wind_object(wind: Wind) -> dict[str, Any]:
+    return {"speed_m_s": wind.speed_m_s, "from_deg": wind.from_deg}
+
+
+def _farm_object(farm: Farm, *, has_times: bool) -> dict[str, Any]:
     """Return a farm as it stands in the file."""
     return {
         "name": farm.name,
@@ -225,6 +296,11 @@ def _farm_object(farm: Farm) -> dict[str, Any]:
                 "sampling_point": list(pond.sampling_point),
                 "outline": _rings_object(pond.outline),
                 "service_s": pond.service_s,
+                **(
+                    {"time_windows": [list(window) for window in pond.time_windows], "priority": pond.priority}
+                    if has_times
+                    else {}
+                ),
             }
             for pond in farm.ponds
         ],
@@ -237,8 +313,9 @@ def _farm_object(farm: Farm) -> dict[str, Any]:
     }
 
 
-def _fleet_object(fleet: Fleet) -> dict[str, Any]:
-    return {**{key: getattr(fleet, key) for key in FLEET_KEYS}, "assumptions": list(fleet.assumptions)}
+def _fleet_object(fleet: Fleet, *, is_of_round: bool) -> dict[str, Any]:
+    keys = (*FLEET_KEYS, *ROUND_KEYS) if is_of_round else FLEET_KEYS
+    return {**{key: getattr(fleet, key) for key in keys}, "assumptions": list(fleet.assumptions)}
 
 
 def _rings_object(rings: tuple[Ring, ...]) -> list[list[list[float]]]:
@@ -257,6 +334,7 @@ def _violation_object(farm: Farm, violation: FarmViolation) -> dict[str, Any]:
     return {
         "kind": violation.kind,
         "drone": violation.drone,
+        **({} if violation.trip is None else {"trip": violation.trip}),
         "pond": violation.pond,
         "id": None if violation.pond is None else farm.ponds[violation.pond].id,
         "value": violation.value,
@@ -266,63 +344,60 @@ def _violation_object(farm: Farm, violation: FarmViolation) -> dict[str, Any]:
     }
 
 
-def _layers_home_j(problem: Problem) -> Iterator[float]:
-    """What the way home of each route takes more than that of the lowest drone; it has no end."""
-    more_j = [float(way_home_j) - problem.energy.way_home_fixed_j for *_, way_home_j in problem.layers] or [0.0]
-    return chain(more_j, repeat(more_j[-1]))
+def _route_object(farm_plan: FarmPlan, drone: int, trips: Sequence[Trip]) -> dict[str, Any]:
+    """Return a route: all trips of a drone, each one battery from the depot to the depot."""
+    phases = [trip.phases for trip in trips]
+
+    def total_wh(name: str) -> float:
+        return float(sum(getattr(phase, name) for phase in phases)) / JOULES_PER_WATT_HOUR
+
+    return {
+        "drone": drone + 1,
+        "length_m": float(sum(trip.length_m for trip in trips)),
+        "duration_s": trips[-1].arrival_s - trips[0].departure_s if len(trips) > 1 else trips[0].duration_s,
+        "energy_wh": float(sum(trip.energy_j for trip in trips)) / JOULES_PER_WATT_HOUR,
+        "energy_by_phase_wh": {
+            "takeoff": total_wh("takeoff_j"),
+            "legs": total_wh("legs_j"),
+            "sampling": total_wh("sampling_j"),
+            "way_home": total_wh("way_home_j"),
+        },
+        "trips": [_trip_object(farm_plan, trip) for trip in trips],
+    }
 
 
-def _route_object(farm_plan: FarmPlan, index: int, energies_home_j: list[float]) -> dict[str, Any]:
-    """A route is one trip: one battery, flown from the depot to the depot."""
-    plan, problem = farm_plan.solution.plan, farm_plan.solution.problem
-    route, start_s = plan.routes[index], farm_plan.takeoff_times_s[index]
-    lengths_m, energies_j = plan.leg_lengths_m[index], plan.leg_energies_j[index]
-    usable_j = problem.energy.usable_j
-    used_j, stops = 0.0, []
-    for order, pond in enumerate(route):
+def _trip_object(farm_plan: FarmPlan, trip: Trip) -> dict[str, Any]:
+    usable_j = farm_plan.fleet.usable_energy_j
+    is_known = math.isfinite(usable_j)
+    stops = []
+    for order, pond in enumerate(trip.ponds):
         longitude, latitude = farm_plan.farm.ponds[pond].sampling_point
-        used_j += float(energies_j[order] + problem.service_energies_j[pond])
-        arrival_s = start_s + float(plan.arrivals_s[index][order])
+        arrival_s, start_s, departure_s = map(float, trip.times_s[order])
+        used_j, home_j = map(float, trip.energies_j[order])
         stops.append(
             {
                 "pond": pond,
                 "id": farm_plan.farm.ponds[pond].id,
                 "lon_deg": longitude,
                 "lat_deg": latitude,
-                "leg_length_m": float(lengths_m[order]),
+                "leg_length_m": float(trip.legs[order, 0]),
                 "arrival_s": arrival_s,
-                "start_s": arrival_s,
-                "departure_s": start_s + float(plan.departures_s[index][order]),
-                "energy_left_wh": (usable_j - used_j) / JOULES_PER_WATT_HOUR if math.isfinite(usable_j) else None,
-                "energy_home_wh": energies_home_j[pond] / JOULES_PER_WATT_HOUR,
+                "start_s": start_s,
+                "departure_s": departure_s,
+                "energy_left_wh": (usable_j - used_j) / JOULES_PER_WATT_HOUR if is_known else None,
+                "energy_home_wh": home_j / JOULES_PER_WATT_HOUR,
             }
         )
-    phases = farm_plan.energy_phases(index)
-    length_m, duration_s = float(plan.route_lengths[index]), float(plan.route_durations_s[index])
-    energy_wh = float(plan.route_energies_j[index]) / JOULES_PER_WATT_HOUR
-    trip = {
-        "departure_s": start_s,
-        "arrival_s": farm_plan.back_times_s[index],
-        "length_m": length_m,
-        "energy_wh": energy_wh,
-        "usable_energy_wh": usable_j / JOULES_PER_WATT_HOUR if math.isfinite(usable_j) else None,
+    return {
+        "departure_s": trip.departure_s,
+        "arrival_s": trip.arrival_s,
+        "length_m": trip.length_m,
+        "energy_wh": trip.energy_j / JOULES_PER_WATT_HOUR,
+        "usable_energy_wh": usable_j / JOULES_PER_WATT_HOUR if is_known else None,
         "start_place": _DEPOT,
         "end_place": _DEPOT,
         "stops": stops,
-        "return_leg_length_m": float(lengths_m[-1]),
-    }
-    return {
-        "drone": index + 1,
-        "length_m": length_m,
-        "duration_s": duration_s,
-        "energy_wh": energy_wh,
-        "energy_by_phase_wh": {
-            "takeoff": phases.takeoff_j / JOULES_PER_WATT_HOUR,
-            "legs": phases.legs_j / JOULES_PER_WATT_HOUR,
-            "sampling": phases.sampling_j / JOULES_PER_WATT_HOUR,
-            "way_home": phases.way_home_j / JOULES_PER_WATT_HOUR,
-        },
-        "trips": [trip],
+        "return_leg_length_m": float(trip.legs[-1, 0]),
     }
 
 
@@ -332,12 +407,13 @@ def _farm(content: Mapping[str, Any]) -> Farm:
 
 
 def _fleet(content: Mapping[str, Any]) -> Fleet:
-    return fleet_of({key: content[key] for key in FLEET_KEYS}, content["assumptions"])
+    settings = {key: content[key] for key in (*FLEET_KEYS, *ROUND_KEYS) if key in content}
+    return fleet_of(settings, content["assumptions"])
 
 
 def _violation(content: Mapping[str, Any]) -> FarmViolation:
     keys = ("kind", "message", "remedy", "drone", "pond", "value", "limit")
-    return FarmViolation(**{key: content[key] for key in keys})
+    return FarmViolation(**{key: content[key] for key in keys}, trip=content.get("trip"))
 
 
 def _without_words(content: Mapping[str, Any]) -> dict[str, Any]:

@@ -17,7 +17,14 @@ def read_farm_object(content: Mapping[str, Any]) -> Farm:
     return Farm(
         name=content["name"],
         ponds=tuple(
-            Pond(pond["id"], _lon_lat(pond["sampling_point"]), _rings(pond["outline"]), pond["service_s"])
+            Pond(
+                pond["id"],
+                _lon_lat(pond["sampling_point"]),
+                _rings(pond["outline"]),
+                pond["service_s"],
+                tuple((earliest, latest) for earliest, latest in pond.get("time_windows", ())),
+                pond.get("priority", 1.0),
+            )
             for pond in content["ponds"]
         ),
         depot=_lon_lat(content["depot"]),

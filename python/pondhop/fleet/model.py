@@ -15,8 +15,9 @@ from pondhop._core import Energy
 from pondhop.arguments import Arguments
 from pondhop.errors import Fault
 from pondhop.fleet import times
+from pondhop.fleet.clock import clock_faults, seconds_between
 from pondhop.fleet.layers import LEAST_SPACING_M, Layers, layers_of, layers_remedy, lowest_way_home_m
-from pondhop.fleet.settings import DECISIVE, MAX_HEIGHT_M, NUMBERS
+from pondhop.fleet.settings import AIRFRAME_SPEED_M_S, DECISIVE, MAX_HEIGHT_M, NUMBERS, WHOLE
 from pondhop.units import JOULES_PER_WATT_HOUR
 
 SamplingStyle = Literal["hover-dip", "splashdown"]
@@ -56,6 +57,15 @@ class Fleet:
     battery_wh, reserve_percent, health_percent
         What the battery of a drone holds when new and full, how much of that stays unused, and how much of it is left
         with age. ``None``: unknown, and flight time is not checked.
+    swap_s, num_pads
+        What changing the battery of a drone at the depot takes, from landing to the next take-off, and how many drones
+        can be served at once. ``None``: each drone flies once, and all can be served at once.
+    max_trip_duration_s, samples_per_trip
+        What one trip may take, and how many ponds it may sample; ``None`` where only the battery limits it.
+    max_airspeed_m_s
+        The fastest that a drone flies through the air: against the wind it is slower over ground.
+    start, end
+        Clock times of the first take-off and by which all must be back, as "22:00"; ``None``: no clock, no end.
     return_speed_m_s, return_height_m, return_loiter_s, return_extra_s
         The way home as the autopilot flies it (RTL): its speed, the height of the lowest drone, the wait above home,
         and what turning and stopping take.
@@ -114,6 +124,13 @@ class Fleet:
     liftoff_power_w: float = 302.0
     touchdown_power_w: float = 123.0
     water_power_w: float = 0.0
+    max_airspeed_m_s: float = AIRFRAME_SPEED_M_S
+    swap_s: float | None = None
+    num_pads: int | None = None
+    max_trip_duration_s: float | None = None
+    samples_per_trip: int | None = None
+    start: str | None = None
+    end: str | None = None
     assumptions: tuple[str, ...] = field(default=DECISIVE, compare=False, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -177,6 +194,13 @@ class Fleet:
     def way_home_fixed_s(self) -> float:
         """What the way home takes besides its length, for the lowest drone."""
         return times.way_home_fixed_s(self, self._lowest.way_home_m)
+
+    @property
+    def span_s(self) -> float:
+        """How long a round may last, from its first take-off to its end; infinite where nothing says so."""
+        if self.start is None or self.end is None:
+            return math.inf
+        return seconds_between(self.start, self.end)
 
     def num_flying(self, num_ponds: int) -> int:
         """Return how many drones can fly a round over so many ponds: none flies without a pond."""
@@ -267,8 +291,11 @@ def setting_faults(settings: Mapping[str, object]) -> list[Fault]:
         if name == "sampling":
             arguments.one_of(name, value, get_args(SamplingStyle))
             continue
+        if name in ("start", "end"):
+            arguments.faults += clock_faults(name, value)
+            continue
         least, most = NUMBERS[name].least, NUMBERS[name].most
-        if name == "num_drones":
+        if name in WHOLE:
             arguments.whole(name, value, int(least), int(most), f"give a whole number from {least:.0f} to {most:.0f}")
         elif arguments.real(name, value, least, most, f"give a number from {least:.9g} to {most:.9g}"):
             arguments.faults += _dwell_faults(value) if name == "dwell_s" else []
@@ -299,6 +326,15 @@ def _combined_faults(settings: Mapping[str, object], faulty: Collection[str]) ->
         if dip_m >= transit_m:
             message = f"{dip_m:g} m is not below the transit height of {transit_m:g} m"
             faults.append(Fault("dip_height_m", message, "dip lower or fly higher"))
+    if are_good("end") and values["start"] is None:
+        message = f"the round is to end at {values['end']}, and nothing says when it starts"
+        faults.append(Fault("start", message, 'give start = "22:00", or on the command line --start 22:00'))
+    if are_good("swap_s", "max_route_length_m"):
+        message = "a drone whose battery is swapped has no longest route"
+        faults.append(Fault("max_route_length_m", message, "leave it out: the battery limits every trip"))
+    if are_good("swap_s", "max_route_duration_s"):
+        message = "a drone whose battery is swapped has no longest route"
+        faults.append(Fault("max_route_duration_s", message, "give max_trip_duration_s for one trip, or an end"))
     if are_good("num_drones", "layer_spacing_m", "return_height_m", "transit_height_m"):
         lowest_m = lowest_way_home_m(values["return_height_m"], values["transit_height_m"])
         faults += _spacing_faults(values["num_drones"] - 1, values["layer_spacing_m"], lowest_m)

@@ -70,6 +70,11 @@ NUMBERS = {
     "health_percent": Setting(1.0, 100.0, "assumed"),
     "max_route_length_m": Setting(1.0, 1e7, "assumed"),
     "max_route_duration_s": Setting(1.0, 1e6, "assumed"),
+    "max_airspeed_m_s": Setting(0.5, 50.0, "measured"),
+    "swap_s": Setting(0.0, 86_400.0, "assumed"),
+    "num_pads": Setting(1, 10_000, "assumed"),
+    "max_trip_duration_s": Setting(1.0, 1e6, "assumed"),
+    "samples_per_trip": Setting(1, 10_000, "assumed"),
 }
 """Every number of a fleet. Speeds, landings and the wait above home end where ArduPilot's parameters for them do.
 
@@ -85,6 +90,9 @@ Looked up in the @Range comments of ArduPilot's source, of which ground stations
 
 AIRFRAME_SPEED_M_S = 10.0
 """The measured quadcopter flies no faster, however it is set: it leans 30 degrees then."""
+
+WHOLE = ("num_drones", "num_pads", "samples_per_trip")
+"""Settings that are whole numbers."""
 
 DECISIVE = ("speed_m_s", "transit_height_m", "sampling", "dwell_s", "dip_height_m")
 """Settings that decide what is flown: their defaults are told as assumptions wherever a plan is told."""

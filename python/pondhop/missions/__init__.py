@@ -1,4 +1,4 @@
-"""One checked mission a drone, with the parameters it needs and what the crew must know.
+"""One checked mission a trip, with the parameters it needs and what the crew must know.
 
 `mission` builds neutral items, `check` holds the rules, `autopilots` what an autopilot stores and must be set to,
 `formats` the files that ground stations load, `parameters` those they set a drone by, `readme` the text for the crew.
@@ -43,7 +43,7 @@ _SUFFIXES = (
         for suffix in (MISSION_PLANNER_SUFFIX, QGROUNDCONTROL_SUFFIX)
     ),
 )
-_MISSION_FILE = re.compile(rf"drone-[1-9][0-9]*({'|'.join(map(re.escape, _SUFFIXES))})")
+_MISSION_FILE = re.compile(rf"drone-[1-9][0-9]*(?:-trip-[1-9][0-9]*)?({'|'.join(map(re.escape, _SUFFIXES))})")
 
 
 def write_missions(folder: str | os.PathLike[str], farm_plan: FarmPlan, *, units: Units = "metric") -> list[Path]:
@@ -125,11 +125,11 @@ def mission_texts(farm_plan: FarmPlan, units: Units = "metric") -> dict[str, str
     if faults:
         raise InvalidInput(faults)
     texts = {}
-    for drone, mission in enumerate(missions):
+    for trip, mission in zip(farm_plan.trips, missions, strict=True):
         for mission_format in FORMATS:
             texts[f"{mission.name}{mission_format.suffix}"] = mission_format.checked_text(mission)
         for generation in ARDUPILOT.generations:
-            parameters = [generation.spelled(parameter) for parameter in ARDUPILOT.parameters(farm_plan, drone, units)]
+            parameters = [generation.spelled(parameter) for parameter in ARDUPILOT.parameters(farm_plan, trip, units)]
             title = f"{mission.name}: what {ARDUPILOT.name} {generation.versions} must be set to"
             stem = f"{mission.name}{generation.tag}"
             texts[f"{stem}{MISSION_PLANNER_SUFFIX}"] = mission_planner_parameters(title, parameters)
@@ -165,8 +165,10 @@ def _check(farm_plan: object) -> None:
 def _judged(farm_plan: FarmPlan, missions: Sequence[Mission], units: Units) -> FarmPlan:
     found = _obstacles(farm_plan, missions, units)
     # What is found again is told in the units asked for; the rest only the planning knew, as ponds out of reach.
-    again = {(violation.kind, violation.drone) for violation in found}
-    known = [violation for violation in farm_plan.obstacles if (violation.kind, violation.drone) not in again]
+    again = {(violation.kind, violation.drone, violation.trip) for violation in found}
+    known = [
+        violation for violation in farm_plan.obstacles if (violation.kind, violation.drone, violation.trip) not in again
+    ]
     return replace(farm_plan, obstacles=(*known, *found))
 
 
@@ -176,12 +178,13 @@ def _obstacles(farm_plan: FarmPlan, missions: Sequence[Mission], units: Units) -
             rule.kind,
             _message(rule.fault, mission),
             _remedy(rule, mission, farm_plan),
-            drone,
+            trip.drone + 1,
             None,
             rule.value,
             rule.limit,
+            trip.number + 1 if farm_plan.is_round else None,
         )
-        for drone, mission in enumerate(missions, start=1)
+        for trip, mission in zip(farm_plan.trips, missions, strict=True)
         for rule in broken_rules(mission, ARDUPILOT, margin_m=farm_plan.fleet.fence_margin_m, units=units)
     ]
     return (*_doubts(farm_plan.farm), *_near_drones(farm_plan, units), *_too_far(farm_plan, units), *broken)
@@ -213,27 +216,30 @@ def _near_drones(farm_plan: FarmPlan, units: Units) -> list[FarmViolation]:
 def _too_far(farm_plan: FarmPlan, units: Units) -> list[FarmViolation]:
     """Drones that would leave the largest circle around home that the autopilot can keep them in."""
     most_m = MAX_FENCE_RADIUS_M - RADIUS_MARGIN_M
-    reaches_m = [reach_of(farm_plan, drone) for drone in range(len(farm_plan.solution.plan.routes))]
+    reaches_m = [(trip, reach_of(farm_plan, trip)) for trip in farm_plan.trips]
     return [
         FarmViolation(
             "too_far",
             f"it gets {length_text(reach_m, units)} from the depot, "
             f"the fence of {ARDUPILOT.name} holds {length_text(most_m, units)}",
             "move the depot nearer, or leave the ponds beyond it out",
-            drone,
+            trip.drone + 1,
             None,
             reach_m,
             most_m,
+            trip.number + 1 if farm_plan.is_round else None,
         )
-        for drone, reach_m in enumerate(reaches_m, start=1)
+        for trip, reach_m in reaches_m
         if reach_m > most_m
     ]
 
 
 def _missions(farm_plan: FarmPlan) -> list[Mission]:
     return [
-        build_mission(drone, farm_plan.farm, farm_plan.fleet, route, farm_plan.layers)
-        for drone, route in enumerate(farm_plan.solution.plan.routes)
+        replace(
+            build_mission(trip.drone, farm_plan.farm, farm_plan.fleet, trip.ponds, farm_plan.layers), name=trip.name
+        )
+        for trip in farm_plan.trips
     ]
 
 
@@ -246,7 +252,9 @@ def _remedy(rule: BrokenRule, mission: Mission, farm_plan: FarmPlan) -> str:
 
 
 def _place(violation: FarmViolation) -> str:
-    return "the plan" if violation.drone is None else f"drone-{violation.drone}"
+    if violation.drone is None:
+        return "the plan"
+    return f"drone-{violation.drone}" + ("" if violation.trip is None else f"-trip-{violation.trip}")
 
 
 def _message(fault: Fault, mission: Mission) -> str:

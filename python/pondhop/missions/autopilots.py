@@ -18,6 +18,7 @@ import numpy as np
 from pondhop._core import LocalFrame
 from pondhop.fleet import Fleet
 from pondhop.solution import FarmPlan
+from pondhop.trips import Trip
 from pondhop.units import Units, gap_text
 
 Kind = Literal["int8", "int16", "int32", "real"]
@@ -100,7 +101,7 @@ class Autopilot:
     max_hold_s
         The longest hold at a waypoint, in whole seconds.
     parameters
-        What a drone of a plan, from 0, must be set to, in the words of the first generation; the reasons in some
+        What the drone of a trip must be set to, in the words of the first generation; the reasons in some
         units.
     generations
         One set of parameter files each. No file mixes them: QGroundControl takes the new names for the old ones on a
@@ -110,7 +111,7 @@ class Autopilot:
     name: str
     max_num_items: int
     max_hold_s: int
-    parameters: Callable[[FarmPlan, int, Units], list[Parameter]]
+    parameters: Callable[[FarmPlan, Trip, Units], list[Parameter]]
     generations: tuple[Generation, ...]
 
 
@@ -126,10 +127,10 @@ A drone that a crew lets land with more care keeps its speed where the fleet fil
 """
 
 
-def _ardupilot_parameters(farm_plan: FarmPlan, drone: int, units: Units) -> list[Parameter]:
+def _ardupilot_parameters(farm_plan: FarmPlan, trip: Trip, units: Units) -> list[Parameter]:
     fleet, farm = farm_plan.fleet, farm_plan.farm
     layers = farm_plan.layers
-    return_height_m = layers.way_home_height_m(drone)
+    return_height_m = layers.way_home_height_m(trip.drone)
     speed_why = "a pause in flight forgets the speed of the mission and takes this one"
     home_why = f"drones come home in layers, {gap_text(layers.spacing_m, units)} above each other"
     found = [
@@ -148,15 +149,14 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int, units: Units) -> list
         if getattr(fleet, setting) != getattr(Fleet, setting)
     ]
     if fleet.sampling == "splashdown":
-        route = farm_plan.solution.plan.routes[drone]
-        stays_s = 2 * max(fleet.dwell_at(farm.ponds[pond].service_s) for pond in route) + 30
+        stays_s = 2 * max(fleet.dwell_at(farm.ponds[pond].service_s) for pond in trip.ponds) + 30
         delay_s = math.ceil(stays_s) if stays_s <= MAX_DISARM_DELAY_S else 0
         found += [
             Parameter("MIS_OPTIONS", 4, "bit 2: without it a drone ends on the first pond; add other bits", "int16"),
             Parameter("DISARM_DELAY", delay_s, "with less, a drone disarms on a pond before its stay is over", "int8"),
         ]
-    ceiling_m = max(return_height_m, layers.way_out_height_m(drone)) + CEILING_MARGIN_M
-    reach_m = reach_of(farm_plan, drone) + RADIUS_MARGIN_M
+    ceiling_m = max(return_height_m, layers.way_out_height_m(trip.drone)) + CEILING_MARGIN_M
+    reach_m = reach_of(farm_plan, trip) + RADIUS_MARGIN_M
     fence_why = "altitude, circle and polygons; a radius or ceiling left at its default ends the round on the way"
     found += [
         Parameter("FENCE_TYPE", 7, fence_why, "int8"),
@@ -173,9 +173,9 @@ def _ardupilot_parameters(farm_plan: FarmPlan, drone: int, units: Units) -> list
     return found
 
 
-def reach_of(farm_plan: FarmPlan, drone: int) -> float:
-    """Return how far from home a drone gets, in metres."""
-    ponds = [farm_plan.farm.ponds[pond].sampling_point for pond in farm_plan.solution.plan.routes[drone]]
+def reach_of(farm_plan: FarmPlan, trip: Trip) -> float:
+    """Return how far from home a trip gets, in metres."""
+    ponds = [farm_plan.farm.ponds[pond].sampling_point for pond in trip.ponds]
     local = LocalFrame(*farm_plan.farm.depot).to_local(np.array(ponds, dtype=np.float64))
     return float(np.hypot(*local.T).max())
 

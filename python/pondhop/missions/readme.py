@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections import defaultdict
 from textwrap import fill
@@ -9,9 +10,10 @@ from textwrap import fill
 from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation, Parameter
 from pondhop.missions.formats import FORMATS
 from pondhop.solution import FarmPlan
+from pondhop.trips import Trip
 from pondhop.units import (
+    JOULES_PER_WATT_HOUR,
     Units,
-    clock_text,
     counted,
     duration_text,
     energy_text,
@@ -41,6 +43,7 @@ def crew_readme(farm_plan: FarmPlan, autopilot: Autopilot, units: Units = "metri
         [f"{_TITLE} {farm_plan.farm.name}, {farm_plan.fleet.sampling}, for {autopilot.name} Copter"],
         ["DRONES", *_drones(farm_plan, units)],
         ["BATTERY", f"{farm_plan.battery_text} Start every drone with a full battery."],
+        *([["SWAPS", *swaps]] if (swaps := _swaps(farm_plan)) else []),
         ["SET EVERY DRONE", *_settings(farm_plan, autopilot, units)],
         ["START", *_start(farm_plan, units)],
         ["WIND", *_wind(farm_plan, units)],
@@ -55,35 +58,68 @@ def _wrapped(paragraph: str) -> str:
 
 
 def _drones(farm_plan: FarmPlan, units: Units) -> list[str]:
-    layers, plan = farm_plan.layers, farm_plan.solution.plan
-    rows = []
-    for drone, route in enumerate(plan.routes):
-        start_s, back_s = farm_plan.takeoff_times_s[drone], farm_plan.back_times_s[drone]
-        duration_s, phases = float(plan.route_durations_s[drone]), farm_plan.energy_phases(drone)
-        length, energy = length_text(float(plan.route_lengths[drone]), units), energy_text(phases.total_j)
-        way_out = height_text(layers.way_out_height_m(drone), units)
-        way_home = height_text(layers.way_home_height_m(drone), units)
+    layers, rows = farm_plan.layers, list[str]()
+    for trip in farm_plan.trips:
+        start, back, phases = farm_plan.clock(trip.departure_s), farm_plan.clock(trip.arrival_s), trip.phases
+        length, energy = length_text(trip.length_m, units), energy_text(phases.total_j)
+        way_out = height_text(layers.way_out_height_m(trip.drone), units)
+        way_home = height_text(layers.way_home_height_m(trip.drone), units)
         rows += [
-            f"drone-{drone + 1}: {counted(len(route), 'pond')}, {length}, {duration_text(duration_s)}, {energy}",
-            f"  takes off at {clock_text(start_s)}, flies out {way_out} high, comes home {way_home} high, "
-            f"is back at {clock_text(back_s)}",
+            f"{trip.name}: {counted(len(trip.ponds), 'pond')}, {length}, {duration_text(trip.duration_s)}, {energy}",
+            f"  takes off at {start}, flies out {way_out} high, comes home {way_home} high, is back at {back}",
             f"  energy: take-off {energy_text(phases.takeoff_j)}, legs {energy_text(phases.legs_j)}, "
             f"sampling {energy_text(phases.sampling_j)}, way home {energy_text(phases.way_home_j)}",
         ]
-    return [*rows, f"All are back {duration_text(farm_plan.all_back_s)} after the first take-off, in calm air."]
+    air = "in calm air"
+    if farm_plan.wind.speed_m_s:
+        air = f"in {farm_plan.wind.told(units)}"
+    return [*rows, f"All are back {duration_text(farm_plan.all_back_s)} after the first take-off, {air}."]
+
+
+def _swaps(farm_plan: FarmPlan) -> list[str]:
+    """When the crew changes which battery, in the order of the landings."""
+    if farm_plan.fleet.swap_s is None:
+        return []
+    landings = sorted((trip for trip in farm_plan.trips), key=lambda trip: (trip.arrival_s, trip.drone))
+    later = {(trip.drone, trip.number) for trip in farm_plan.trips}
+    swaps = [
+        f"{farm_plan.clock(trip.arrival_s)}  drone {trip.drone + 1} lands"
+        f"{'' if math.isnan(left_j := _left_j(farm_plan, trip)) else f' with {energy_text(left_j)} left'}: "
+        f"give it battery {trip.number + 2}, load "
+        f"drone-{trip.drone + 1}-trip-{trip.number + 2}, ready at {farm_plan.clock(trip.ready_s)}"
+        for trip in landings
+        if (trip.drone, trip.number + 1) in later
+    ]
+    num_batteries = len(farm_plan.trips)
+    return [
+        f"{num_batteries} full batteries in all if none is charged in between, one a trip; a swap takes "
+        f"{duration_text(farm_plan.fleet.swap_s)}.",
+        *swaps,
+    ]
+
+
+def _left_j(farm_plan: FarmPlan, trip: Trip) -> float:
+    """What is in the battery at the landing, the reserve with it."""
+    fleet = farm_plan.fleet
+    if fleet.battery_wh is None:
+        return math.nan
+    return fleet.battery_wh * JOULES_PER_WATT_HOUR * fleet.health_percent / 100 - trip.energy_j
 
 
 def _settings(farm_plan: FarmPlan, autopilot: Autopilot, units: Units) -> list[str]:
-    parameters = autopilot.parameters(farm_plan, 0, units)
+    parameters = autopilot.parameters(farm_plan, farm_plan.trips[0], units)
+    first = farm_plan.trips[0].name
+    each = "Each drone has parameters of its own" if not farm_plan.is_round else "Each trip has parameters of its own"
+    own = "drone-N-trip-M" if farm_plan.fleet.swap_s is not None else "drone-N"
     return [
-        "Each drone has parameters of its own: load drone-N.param with Mission Planner, or drone-N.params with "
+        f"{each}: load {own}.param with Mission Planner, or {own}.params with "
         "QGroundControl, into drone N and no other.",
         *(
-            f"{generation.versions}: load drone-N{generation.tag}.param or drone-N{generation.tag}.params instead, and "
+            f"{generation.versions}: load {own}{generation.tag}.param or {own}{generation.tag}.params instead, and "
             f"never into an older version: {_renamed(generation, parameters)}."
             for generation in autopilot.generations[1:]
         ),
-        f"Then read what the drone holds and compare. For drone-1, {autopilot.generations[0].versions}:",
+        f"Then read what the drone holds and compare. For {first}, {autopilot.generations[0].versions}:",
         *(f"  {found.name} {found.value:g}: {found.why}" for found in parameters),
         "WARNING: with the defaults of ArduPilot nothing happens when a battery runs low (BATT_FS_LOW_ACT 0) or the "
         "ground station is lost (FS_GCS_ENABLE 0). Set BATT_LOW_VOLT and BATT_LOW_MAH for your battery, or "
@@ -102,7 +138,8 @@ def _renamed(generation: Generation, parameters: list[Parameter]) -> str:
 
 
 def _start(farm_plan: FarmPlan, units: Units) -> list[str]:
-    files = ", ".join(f"drone-N{mission_format.suffix} with {mission_format.name}" for mission_format in FORMATS)
+    own = "drone-N-trip-M" if farm_plan.fleet.swap_s is not None else "drone-N"
+    files = ", ".join(f"{own}{mission_format.suffix} with {mission_format.name}" for mission_format in FORMATS)
     return [
         f"Load {files}: the same mission, but only .plan holds the fence and the no-fly zones.",
         f"Stand the drones at least {height_text(STANDS_APART_M, units)} apart: each comes home to where it was armed.",
@@ -157,7 +194,7 @@ def _own_times(farm_plan: FarmPlan) -> list[str]:
 
 def _layers(farm_plan: FarmPlan, units: Units) -> list[str]:
     """What keeps drones apart in height, where more than one flies."""
-    if len(farm_plan.solution.plan.routes) < 2:
+    if farm_plan.num_drones_flying < 2:
         return []
     spacing = gap_text(farm_plan.layers.spacing_m, units)
     crossing = (

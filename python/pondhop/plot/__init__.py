@@ -6,8 +6,10 @@ Every function draws on the axes it is given or on a figure of its own, returns 
 
 from pondhop.plot.canvas import draw_areas, figure_bytes, prepared_axes, save_figure
 from pondhop.plot.look import LOOKS, Look, Theme
+from pondhop.plot.nights import plot_night
 from pondhop.plot.plans import drawn_plan, plot_clusters, plot_plan, plot_solution
 from pondhop.plot.routes import draw_depot
+from pondhop.plot.sizes import plot_sizes
 
 __all__ = [
     "LOOKS",
@@ -18,7 +20,9 @@ __all__ = [
     "drawn_plan",
     "figure_bytes",
     "plot_clusters",
+    "plot_night",
     "plot_plan",
+    "plot_sizes",
     "plot_solution",
     "prepared_axes",
     "save_figure",

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from pondhop.arguments import Arguments, checked_path
 from pondhop.documents.atomic import write_all
 from pondhop.errors import Fault, InvalidInput
+from pondhop.fleet import Wind
 from pondhop.plot.fonts import lettering
 from pondhop.plot.look import Look
-from pondhop.units import METRES_PER_FOOT, METRES_PER_MILE, Units
+from pondhop.units import METRES_PER_FOOT, METRES_PER_MILE, Units, speed_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -179,6 +180,30 @@ def draw_scale_bar(ax: Axes, look: Look, units: Units) -> None:
         arrowprops={"arrowstyle": "-|>", "color": look.ink, "shrinkA": 0, "shrinkB": 0},
         zorder=6,
     )
+
+
+def draw_wind(ax: Axes, wind: Wind, look: Look, units: Units) -> None:
+    """Draw an arrow the way the wind blows beside the scale, and how strong it is; nothing in calm air.
+
+    `draw_scale_bar` made room for it below the map.
+    """
+    if not wind.speed_m_s:
+        return
+    west, east = ax.get_xlim()
+    south, north = ax.get_ylim()
+    room = 0.07 * (north - south) / 1.07
+    centre_x, centre_y, half = west + 0.5 * (east - west), south + 0.65 * room, 0.45 * room / wind.speed_m_s
+    east_m_s, north_m_s = wind.velocity_m_s
+    ax.annotate(
+        "",
+        xy=(centre_x + half * east_m_s, centre_y + half * north_m_s),
+        xytext=(centre_x - half * east_m_s, centre_y - half * north_m_s),
+        arrowprops={"arrowstyle": "-|>", "color": look.ink, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0},
+        zorder=6,
+    )
+    text = f"wind {speed_text(wind.speed_m_s, units)} from {wind.from_deg:g}\N{DEGREE SIGN}"
+    x = centre_x + 0.6 * room
+    ax.text(x, centre_y, text, ha="left", va="center", fontsize=9, color=look.ink, zorder=6)
 
 
 def write_title(ax: Axes, name: str, lines: Sequence[Sequence[str]], look: Look) -> frozenset[str]:

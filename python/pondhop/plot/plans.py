@@ -15,6 +15,7 @@ from pondhop.plot.canvas import (
     draw_areas,
     draw_areas_with_holes,
     draw_scale_bar,
+    draw_wind,
     prepared_axes,
     write_legend,
     write_title,
@@ -24,14 +25,16 @@ from pondhop.plot.names import draw_names
 from pondhop.plot.routes import (
     LINE_STYLES,
     MARKERS,
+    DrawnRoute,
     draw_depot,
     draw_routes,
     draw_shading_key,
     marker_size,
     numbered_ponds,
+    routes_of,
 )
 from pondhop.solution import PLAN_WANTED, FarmPlan
-from pondhop.units import Units, clock_text, counted, duration_text, energy_text, length_text
+from pondhop.units import Units, counted, duration_text, energy_text, length_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,9 +80,9 @@ def drawn_plan(
     arguments.kind("farm_plan", farm_plan, FarmPlan, PLAN_WANTED)
     _check_look(arguments, ax, theme, units)
     farm, solution = farm_plan.farm, farm_plan.solution
-    plan = solution.plan
     frame = LocalFrame(*farm.depot)
     look = LOOKS[theme]
+    are_numbered = farm_plan.fleet.swap_s is not None
     water = [[_local(frame, ring) for ring in pond.outline] for pond in farm.ponds if pond.outline]
     fences = [_local(frame, rings[0]) for rings in farm.fences]
     # As missions hold them, not as they were drawn: a crew sees what its drones are kept out of.
@@ -94,12 +97,16 @@ def drawn_plan(
     draw_areas_with_holes(
         ax, zones, facecolor="none", edgecolor=look.no_fly, linewidth=1.0, hatch="////", zorder=1, label="no-fly zone"
     )
-    draw_routes(
-        ax, solution.problem, plan, [_drone_label(farm_plan, drone, units) for drone in range(len(plan.routes))], look
-    )
+    routes = [
+        DrawnRoute(trip.drone, f"{trip.drone + 1}" + (f".{trip.number + 1}" if are_numbered else ""), trip.ponds)
+        for trip in farm_plan.trips
+    ]
+    labels = {trip.drone: _drone_label(farm_plan, trip.drone, units) for trip in farm_plan.trips}
+    draw_routes(ax, solution.problem, routes, labels, look, farm_plan.left_out)
+    draw_wind(ax, farm_plan.wind, look, units)
     draw_shading_key(ax, look)
     draw_scale_bar(ax, look, units)
-    numbered = numbered_ponds(solution.problem, plan)
+    numbered = numbered_ponds(solution.problem, routes)
     unwritten = draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look, numbered=numbered)
     write_legend(ax, look)
     return ax, unwritten | write_title(ax, farm.name, _facts(farm_plan, units), look)
@@ -107,27 +114,29 @@ def drawn_plan(
 
 def _drone_label(farm_plan: FarmPlan, drone: int, units: Units) -> str:
     """What the legend says of a route: ponds, length, energy, and when the drone starts and is back."""
-    plan = farm_plan.solution.plan
-    start_s, back_s = farm_plan.takeoff_times_s[drone], farm_plan.back_times_s[drone]
+    trips = [trip for trip in farm_plan.trips if trip.drone == drone]
+    start, back = farm_plan.clock(trips[0].departure_s), farm_plan.clock(trips[-1].arrival_s)
     return ", ".join(
         [
-            counted(len(plan.routes[drone]), "pond"),
-            length_text(float(plan.route_lengths[drone]), units),
-            energy_text(float(plan.route_energies_j[drone])),
-            f"starts {clock_text(start_s)}, back {clock_text(back_s)}",
+            counted(sum(len(trip.ponds) for trip in trips), "pond"),
+            *([counted(len(trips), "trip")] if farm_plan.fleet.swap_s is not None else []),
+            length_text(sum(trip.length_m for trip in trips), units),
+            energy_text(sum(trip.energy_j for trip in trips)),
+            f"starts {start}, back {back}",
         ]
     )
 
 
 def _facts(farm_plan: FarmPlan, units: Units) -> list[list[str]]:
-    solution, plan = farm_plan.solution, farm_plan.solution.plan
+    solution, trips = farm_plan.solution, farm_plan.trips
+    lengths_m = [trip.length_m for trip in trips]
     lines = [
         [
             counted(len(farm_plan.farm.ponds), "pond"),
-            counted(len(plan.routes), "drone"),
+            counted(farm_plan.num_drones_flying, "drone"),
             f"all back after {duration_text(farm_plan.all_back_s)}",
-            f"longest route {length_text(plan.max_route_length, units)}",
-            f"total {length_text(plan.total_length, units)}",
+            f"longest {farm_plan.trip_word} {length_text(max(lengths_m, default=0.0), units)}",
+            f"total {length_text(sum(lengths_m), units)}",
         ]
     ]
     if solution.separation is not None:
@@ -182,7 +191,7 @@ def plot_solution(
         f"{length:.3f}, {counted(len(route), 'pond')}"
         for route, length in zip(plan.routes, plan.route_lengths, strict=True)
     ]
-    draw_routes(ax, problem, plan, labels, look)
+    draw_routes(ax, problem, routes_of(plan), dict(enumerate(labels)), look, plan.unserved)
     parts = [f"longest route {plan.max_route_length:.3f}", f"total {plan.total_length:.3f}"]
     write_legend(ax, look)
     title = f"{counted(problem.num_ponds, 'pond')}, {counted(len(plan.routes), 'route')}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -24,32 +25,73 @@ _ARROW_EVERY = 0.09
 """Flown length between direction arrows, as a share of the diagonal of the picture."""
 
 
-def draw_routes(ax: Axes, problem: Problem, plan: Plan, labels: Sequence[str], look: Look) -> None:
-    """Draw each route with the hull of its ponds, its number at its farthest pond, and a line in the legend."""
+@dataclass(frozen=True)
+class DrawnRoute:
+    """What one drone flies without a stop at the depot.
+
+    Attributes
+    ----------
+    drone
+        Whose it is, from 0; it says the colour.
+    number
+        What stands at its farthest pond.
+    ponds
+        Indices in flying order.
+    """
+
+    drone: int
+    number: str
+    ponds: Sequence[int]
+
+
+def routes_of(plan: Plan) -> list[DrawnRoute]:
+    """Return the routes of a plan, one a drone."""
+    return [DrawnRoute(index, str(index + 1), route) for index, route in enumerate(plan.routes)]
+
+
+def draw_routes(
+    ax: Axes,
+    problem: Problem,
+    routes: Sequence[DrawnRoute],
+    labels: Mapping[int, str],
+    look: Look,
+    unserved: Sequence[int] = (),
+) -> None:
+    """Draw each route with the hull of its ponds, its number at its farthest pond, and a line a drone in the legend."""
     diagonal = float(np.hypot(np.diff(ax.get_xlim()), np.diff(ax.get_ylim()))[0])
     size = marker_size(problem)
-    for index, route in enumerate(plan.routes):
-        colour, cycle = route_colour(index), index // len(ROUTE_COLOURS)
+    told = set[int]()
+    for route in routes:
+        colour, cycle = route_colour(route.drone), route.drone // len(ROUTE_COLOURS)
         style, marker = LINE_STYLES[cycle % 4], MARKERS[cycle % 4]
-        ponds = problem.ponds[route]
+        ponds = problem.ponds[list(route.ponds)]
         path = np.vstack([problem.depot, ponds, problem.depot])
         _draw_hull(ax, ponds, colour)
         ax.plot(*path.T, color=colour, linewidth=1.4, linestyle=style, zorder=3)
         ax.plot(*ponds.T, color=colour, linestyle="", marker=marker, markersize=size, zorder=4)
-        label = f"{index + 1}: {labels[index]}"
-        ax.plot([], [], color=colour, linewidth=1.8, linestyle=style, marker=marker, markersize=5, label=label)
+        if route.drone not in told:
+            told.add(route.drone)
+            label = f"{route.drone + 1}: {labels[route.drone]}"
+            ax.plot([], [], color=colour, linewidth=1.8, linestyle=style, marker=marker, markersize=5, label=label)
         _draw_arrows(ax, path, colour, _ARROW_EVERY * diagonal)
-    _draw_numbers(ax, problem, plan, look)
-    unserved = problem.ponds[plan.unserved]
+    _draw_numbers(ax, problem, routes, look)
     if len(unserved):
-        ax.plot(*unserved.T, "x", color=look.no_fly, markersize=6, markeredgewidth=1.6, zorder=5, label="not visited")
+        ax.plot(
+            *problem.ponds[list(unserved)].T,
+            "x",
+            color=look.no_fly,
+            markersize=6,
+            markeredgewidth=1.6,
+            zorder=5,
+            label="not visited",
+        )
     draw_depot(ax, problem, look)
 
 
-def numbered_ponds(problem: Problem, plan: Plan) -> list[int]:
+def numbered_ponds(problem: Problem, routes: Sequence[DrawnRoute]) -> list[int]:
     """Return the pond of each route that is farthest from the depot: its number stands there."""
     distances = np.hypot(*(problem.ponds - problem.depot).T)
-    return [max(route, key=lambda pond: float(distances[pond])) for route in plan.routes]
+    return [max(route.ponds, key=lambda pond: float(distances[pond])) for route in routes]
 
 
 def draw_shading_key(ax: Axes, look: Look) -> None:
@@ -105,17 +147,17 @@ def _draw_arrows(ax: Axes, path: Points, colour: str, distance: float) -> None:
             flown = 0.0
 
 
-def _draw_numbers(ax: Axes, problem: Problem, plan: Plan, look: Look) -> None:
+def _draw_numbers(ax: Axes, problem: Problem, routes: Sequence[DrawnRoute], look: Look) -> None:
     """Write the number of each route at the pond of it that is farthest from the depot."""
-    for index, pond in enumerate(numbered_ponds(problem, plan)):
+    for route, pond in zip(routes, numbered_ponds(problem, routes), strict=True):
         ax.annotate(
-            str(index + 1),
+            route.number,
             xy=tuple(problem.ponds[pond]),
             ha="center",
             va="center",
             fontsize=8,
             fontweight="bold",
             color=look.ink,
-            bbox={"boxstyle": "circle,pad=0.25", "facecolor": look.background, "edgecolor": route_colour(index)},
+            bbox={"boxstyle": "circle,pad=0.25", "facecolor": look.background, "edgecolor": route_colour(route.drone)},
             zorder=6,
         )

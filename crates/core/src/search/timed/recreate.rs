@@ -17,7 +17,7 @@ const PLACE_BLINK: u64 = u64::MAX / 100;
 /// Trips of which both ends are tried, besides those that are near; a random run of them.
 const MAX_ENDS: usize = 12;
 /// Visits of the bank that are tried in one step besides those just taken out; a random run of them.
-const MAX_BANK: usize = 20;
+const MAX_BANK: usize = 8;
 /// What a second beyond the target costs, beside the added time: the one or the other for every insertion.
 const OVERFLOW_PRICES: [f64; 2] = [1000.0, 10.0];
 
