@@ -24,11 +24,12 @@ if TYPE_CHECKING:
     from pondhop.farm import Farm, Pond, generate_farm, read_farm, write_farm
     from pondhop.files.plan_geojson import write_plan_geojson
     from pondhop.files.plan_json import read_plan_json, write_plan_json
-    from pondhop.fleet import Fleet, read_fleet
+    from pondhop.fleet import Fleet, Wind, read_fleet
     from pondhop.instances import ResearchFarm, generate, read_farms, write_farms
     from pondhop.missions import write_missions
     from pondhop.planners import PLANNERS, plan, solve
-    from pondhop.solution import FarmPlan, Solution
+    from pondhop.solution import FarmPlan, RoundSolution, Solution
+    from pondhop.trips import Trip
 
 _MODULE_OF = {
     "Energy": "_core",
@@ -43,9 +44,12 @@ _MODULE_OF = {
     "Pond": "farm",
     "Problem": "_core",
     "ResearchFarm": "instances",
+    "RoundSolution": "solution",
     "Separation": "_core",
     "Solution": "solution",
+    "Trip": "trips",
     "Violation": "_core",
+    "Wind": "fleet",
     "__version__": "_core",
     "evaluate": "_core",
     "generate": "instances",
@@ -82,9 +86,12 @@ __all__ = [
     "Pond",
     "Problem",
     "ResearchFarm",
+    "RoundSolution",
     "Separation",
     "Solution",
+    "Trip",
     "Violation",
+    "Wind",
     "__version__",
     "evaluate",
     "generate",

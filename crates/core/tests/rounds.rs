@@ -3,7 +3,9 @@
 use pondhop_core::geometry::Point;
 use pondhop_core::problem::{Energy, Layer, VehicleType, Visit, WayHome};
 use pondhop_core::random::Random;
-use pondhop_core::rounds::{Fleet, Round, RoundPlan, RoundViolation, RoundVisit, Rounding, TimeWindow, evaluate_round};
+use pondhop_core::rounds::{
+    Fleet, Round, RoundPlan, RoundViolation, RoundVisit, Rounding, TimeWindow, evaluate_round, makespan_bound,
+};
 use pondhop_core::search::{Goal, Options, solve_round};
 use pondhop_core::travel::Air;
 
@@ -175,6 +177,8 @@ fn what_the_search_calls_feasible_is_feasible() {
         assert!(difference > -1e-6 || (!is_exact && has_queue), "seed {seed}: {difference}");
         assert!(difference < 1e-6 || !is_exact, "seed {seed}: {difference}");
         num_exact += usize::from(is_exact);
+        let bound = makespan_bound(&task);
+        assert!(!plan.is_feasible() || bound <= plan.makespan() + 1e-6, "seed {seed}: {bound}");
         assert!(broken(&plan).is_empty(), "seed {seed}: {:?}", broken(&plan));
         num_made += routes.iter().flatten().map(Vec::len).sum::<usize>();
     }

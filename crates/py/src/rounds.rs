@@ -9,7 +9,7 @@ use crate::values::table;
 use numpy::PyArray2;
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
-use pondhop_core::rounds::{Fleet, RoundVisit, Rounding, TimeWindow, evaluate_round as judge};
+use pondhop_core::rounds::{Fleet, RoundVisit, Rounding, TimeWindow, evaluate_round as judge, makespan_bound};
 use pondhop_core::search::{Goal, Options, solve_round};
 use pondhop_core::travel::Air;
 use pyo3::prelude::*;
@@ -444,6 +444,23 @@ pub fn evaluate_round(problem: &Round, routes: &Bound<'_, PyAny>) -> PyResult<Ro
         return checked(faults, Routes::new()).and_then(|none| judged(problem, &none));
     };
     judged(problem, &trips)
+}
+
+/// How early the last drone of a round can land at best: no plan that makes all visits has its last landing earlier.
+///
+/// Parameters
+/// ----------
+/// problem
+///     What is to be flown.
+///
+/// Returns
+/// -------
+/// float
+///     In seconds; infinite if no plan makes all visits.
+#[pyfunction]
+pub fn round_bound(py: Python<'_>, problem: &Round) -> f64 {
+    let round = Arc::clone(&problem.inner);
+    py.detach(move || makespan_bound(&round))
 }
 
 fn judged(round: &Round, trips: &[Vec<Vec<usize>>]) -> PyResult<RoundPlan> {
