@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
-from hand_made import make_farm
 from typer.testing import CliRunner
 
 import pondhop
+from hand_made import make_farm
 from pondhop import Farm, FarmPlan, Fleet, InvalidInput, Pond, Wind, generate_farm, read_plan_json, write_plan_json
 from pondhop.cli.main import app
+from pondhop.encounters import encounters_of, tracks_of
 from pondhop.fleet import parse_wind, read_fleet
 from pondhop.fleet.clock import clock_after, seconds_between, windows_after
 from pondhop.nights import Effort, sizes
@@ -32,7 +35,9 @@ def night(farm: Farm) -> FarmPlan:
 
 
 def test_a_night_keeps_battery_swaps_and_end(night: FarmPlan) -> None:
-    assert night.is_round and night.is_feasible and not night.left_out
+    assert night.is_round
+    assert night.is_feasible
+    assert not night.left_out
     assert sorted(pond for trip in night.trips for pond in trip.ponds) == list(range(24))
     assert max(trip.number for trip in night.trips) >= 1
     usable_j = FLEET.usable_energy_j
@@ -90,7 +95,8 @@ def test_every_trip_has_its_files_and_the_crew_a_list_of_swaps(night: FarmPlan, 
     text = (missions / "README.txt").read_text()
     num_swaps = len(night.trips) - night.num_drones_flying
     assert text.count("give it battery") == num_swaps
-    assert "22:00:00" in text and "a wind of 4 m/s from 270 degrees" in " ".join(text.split())
+    assert "22:00:00" in text
+    assert "a wind of 4 m/s from 270 degrees" in " ".join(text.split())
     # A plan of one route a drone takes the place of the night, missions and all.
     write_outputs(tmp_path / "out", pondhop.plan(night.farm, Fleet(2), iterations=100), has_figure=False)
     assert not list(missions.glob("*trip*"))
@@ -123,7 +129,8 @@ def test_the_most_important_ponds_come_first_and_the_rest_is_told_with_what_help
     ponds = tuple(replace(pond, priority=5.0 if index % 4 == 0 else 1.0) for index, pond in enumerate(farm.ponds))
     fleet = replace(FLEET, num_drones=1, end="22:25")
     plan = pondhop.plan(replace(farm, ponds=ponds), fleet, iterations=6000)
-    assert plan.left_out and all(index % 4 for index in plan.left_out)
+    assert plan.left_out
+    assert all(index % 4 for index in plan.left_out)
     assert {violation.kind for violation in plan.violations} == {"unserved"}
     reasons = {unserved.reason for unserved in plan.unserved}
     assert reasons == {"the fleet has no time left for it before the end at 22:25"}
@@ -138,7 +145,8 @@ def test_a_pond_out_of_reach_says_what_battery_it_needs(farm: Farm) -> None:
     far = Pond("far", (farm.depot[0] + 0.05, farm.depot[1]))
     plan = pondhop.plan(replace(farm, ponds=(*farm.ponds, far)), FLEET, iterations=2000)
     (unserved,) = plan.unserved
-    assert unserved.pond == 24 and "alone it takes" in unserved.reason
+    assert unserved.pond == 24
+    assert "alone it takes" in unserved.reason
     battery = next(remedy for remedy in unserved.remedies if remedy.startswith("fly a battery of"))
     needed_wh = float(battery.split()[4])
     larger = replace(FLEET, battery_wh=needed_wh + 1.0)
@@ -148,7 +156,8 @@ def test_a_pond_out_of_reach_says_what_battery_it_needs(farm: Farm) -> None:
 @pytest.mark.parametrize("planner", ["hpp", "territory"])
 def test_other_planners_are_cut_into_trips_that_can_be_flown(farm: Farm, planner: str) -> None:
     plan = pondhop.plan(farm, FLEET, wind=Wind(4.0, 90.0), planner=planner)
-    assert plan.is_feasible and plan.solution.planner == planner
+    assert plan.is_feasible
+    assert plan.solution.planner == planner
     assert sorted(pond for trip in plan.trips for pond in trip.ponds) == list(range(24))
 
 
@@ -156,9 +165,11 @@ def test_the_fewest_drones_are_found_and_fewer_are_proven_too_few(farm: Farm) ->
     fleet = replace(FLEET, end="22:20")
     found = list(sizes(farm, fleet, Wind(2.0, 45.0), Effort(iterations=3000), max_drones=12))
     enough = [size for size in found if size.is_enough]
-    assert enough[0].num_drones > 1 and len(enough) == 3
+    assert enough[0].num_drones > 1
+    assert len(enough) == 3
     assert [size.num_drones for size in found] == list(range(1, enough[-1].num_drones + 1))
-    assert found[0].is_proven_too_few and not any(size.is_proven_too_few for size in enough)
+    assert found[0].is_proven_too_few
+    assert not any(size.is_proven_too_few for size in enough)
     with pytest.raises(InvalidInput, match="by when"):
         list(sizes(farm, replace(FLEET, end=None), Wind(), Effort(), max_drones=2))
 
@@ -168,7 +179,7 @@ def test_places_for_swaps_are_never_overbooked(farm: Farm) -> None:
     assert plan.is_feasible
     swaps = sorted((trip.ready_s - 240.0, trip.ready_s) for trip in plan.trips if trip.ready_s > trip.arrival_s)
     assert len(swaps) >= 2
-    assert all(before[1] <= after[0] + 1e-6 for before, after in zip(swaps, swaps[1:], strict=False))
+    assert all(before[1] <= after[0] + 1e-6 for before, after in itertools.pairwise(swaps))
 
 
 def test_clock_times() -> None:
@@ -259,7 +270,8 @@ def test_the_command_line_plans_a_night_and_sizes_it(farm: Farm, tmp_path: Path)
     code, told = run("plan", path, *short, "--no-figure", "--require-feasible", "-o", tmp_path / "short")
     assert (code, "Left out:" in told, "What would help:" in told) == (3, True, True)
     code, told = run("size", path, *short)
-    assert code == 0 and "sample all 24 ponds in time" in told
+    assert code == 0
+    assert "sample all 24 ponds in time" in told
     code, told = run("size", path, *short, "--max-drones", 1, "--json")
     record = json.loads(told)
     assert (code, record["num_drones"], len(record["sizes"])) == (3, None, 1)
@@ -292,3 +304,43 @@ def test_wrong_tasks_of_ponds_are_told_with_their_place(
     with pytest.raises(InvalidInput) as error:
         pondhop.read_farm(path)
     assert told in str(error.value)
+
+
+def test_trips_are_held_back_until_no_two_drones_meet() -> None:
+    farm = generate_farm(60, at=(-90.9, 33.4), seed=5)
+    fleet = replace(FLEET, num_drones=5, end="23:50")
+    plan = pondhop.plan(farm, fleet, wind=Wind(3.0, 10.0), iterations=2000)
+    apart = pondhop.plan(farm, fleet, wind=Wind(3.0, 10.0), is_deconflicted=True, iterations=2000)
+    assert encounters_of(plan)
+    assert not encounters_of(apart)
+    assert apart.is_feasible
+    assert [trip.ponds for trip in apart.trips] == [trip.ponds for trip in plan.trips]
+    assert any(trip.hold_s > 0.0 for trip in apart.trips)
+    assert apart.all_back_s <= 1.1 * plan.all_back_s
+
+
+def test_a_plan_of_one_route_a_drone_is_held_apart_too(tmp_path: Path) -> None:
+    plan = pondhop.plan(generate_farm(40, at=(-90.9, 33.4), seed=1), Fleet(4), is_deconflicted=True, iterations=2000)
+    assert plan.is_round
+    assert not encounters_of(plan)
+    write_plan_json(tmp_path / "plan.json", plan)
+    assert [trip.hold_s for trip in read_plan_json(tmp_path / "plan.json").trips] == [
+        trip.hold_s for trip in plan.trips
+    ]
+
+
+def test_a_track_is_where_the_trip_says(night: FarmPlan) -> None:
+    problem = night.solution.problem
+    for trip, (drone, knots) in zip(night.trips, tracks_of(night), strict=True):
+        assert drone == trip.drone
+        assert np.all(np.diff(knots[:, 0]) >= 0.0)
+        assert trip.departure_s < knots[0, 0] < knots[-1, 0] < trip.arrival_s
+        assert knots[[0, -1], 1:] == pytest.approx(np.zeros((2, 3)))
+        for pond, (arrival_s, _, departure_s) in zip(trip.ponds, trip.times_s, strict=True):
+            for time_s in (arrival_s, departure_s):
+                here = [np.interp(time_s, knots[:, 0], knots[:, axis]) for axis in (1, 2, 3)]
+                assert here == pytest.approx([*problem.ponds[pond], FLEET.transit_height_m], abs=1e-6)
+        # Between ponds and above home no drone is faster than it flies.
+        steps = np.diff(knots, axis=0)
+        speeds = np.hypot(steps[:, 1], steps[:, 2]) / np.maximum(steps[:, 0], 1e-9)
+        assert speeds[steps[:, 0] > 1e-6].max() <= FLEET.return_speed_m_s + 1e-6

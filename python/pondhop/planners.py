@@ -21,6 +21,7 @@ import numpy as np
 from pondhop import _core, missions, nights
 from pondhop._core import Problem
 from pondhop.arguments import Arguments, shown
+from pondhop.encounters import held_apart
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm
 from pondhop.farm.words import pond_called
@@ -425,6 +426,7 @@ def plan(
     fleet: Fleet,
     *,
     wind: Wind = CALM,
+    is_deconflicted: bool = False,
     planner: str | PlannerFunction = "auto",
     **options: Unpack[OptionFields],
 ) -> FarmPlan:
@@ -441,6 +443,9 @@ def plan(
         The drones and how they sample.
     wind
         How strong it blows and where from.
+    is_deconflicted
+        Whether trips are held back on the ground until no two drones come too near to each other: see
+        `pondhop.encounters`.
     planner, **options
         See `solve`.
 
@@ -458,9 +463,11 @@ def plan(
     arguments.kind("farm", farm, Farm, "give a pondhop.Farm, as pondhop.read_farm returns it")
     arguments.kind("fleet", fleet, Fleet, "give a pondhop.Fleet, as in pondhop.Fleet(num_drones=3)")
     arguments.kind("wind", wind, Wind, "give a pondhop.Wind, as in pondhop.Wind(8.0, 225.0)")
+    arguments.truth("is_deconflicted", is_deconflicted)
     arguments.check()
-    if nights.needs_round(farm, fleet, wind):
+    if is_deconflicted or nights.needs_round(farm, fleet, wind):
         farm_plan = _plan_round(farm, fleet, wind, planner, options)
+        farm_plan = held_apart(farm_plan) if is_deconflicted else farm_plan
         return replace(farm_plan, obstacles=missions.obstacles(farm_plan))
     problem = farm.to_problem(fleet)
     solved = solve(problem, planner=planner, **options)

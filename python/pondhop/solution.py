@@ -123,6 +123,8 @@ class RoundSolution:
         As of `Solution`.
     separation
         `None`: trips of one drone lie across those of others, and times keep them apart.
+    holds_s
+        By how much each trip of each drone is held back on the ground, so that it meets no other; empty for none.
     """
 
     round: Round
@@ -137,6 +139,7 @@ class RoundSolution:
     passed_over: tuple[str, ...] = ()
     known_lower_bound_s: float | None = None
     separation: Separation | None = None
+    holds_s: tuple[tuple[float, ...], ...] = ()
 
     @property
     def passed_over_text(self) -> str:
@@ -348,7 +351,8 @@ class FarmPlan:
         """What is flown, drone by drone, each trip with its times; a drone that flies once has one."""
         solution = self.solution
         if isinstance(solution, RoundSolution):
-            return trips_of_round(solution.problem, solution.plan, are_numbered=self.fleet.swap_s is not None)
+            are_numbered = self.fleet.swap_s is not None
+            return trips_of_round(solution.problem, solution.plan, solution.holds_s, are_numbered=are_numbered)
         return trips_of_plan(solution.problem, solution.plan, self.fleet.takeoff_interval_s)
 
     @property

@@ -6,7 +6,7 @@ A drone that flies once has one trip, its route. A trip is one battery and one m
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, repeat
 
 import numpy as np
@@ -61,6 +61,8 @@ class Trip:
         What is used when the drone leaves each pond, and what the way home from there takes, shape (n, 2).
     phases
         The energy by what the drone does.
+    hold_s
+        By how much it is held back on the ground, so that it meets no other drone.
     """
 
     drone: int
@@ -77,6 +79,7 @@ class Trip:
     energies_j: NDArray[np.float64]
     phases: EnergyPhases
     known_duration_s: float | None = None
+    hold_s: float = 0.0
 
     @property
     def duration_s(self) -> float:
@@ -126,7 +129,9 @@ def trips_of_plan(problem: Problem, plan: Plan, takeoff_interval_s: float) -> tu
     return tuple(found)
 
 
-def trips_of_round(problem: Problem, plan: RoundPlan, *, are_numbered: bool) -> tuple[Trip, ...]:
+def trips_of_round(
+    problem: Problem, plan: RoundPlan, holds_s: Sequence[Sequence[float]] = (), *, are_numbered: bool
+) -> tuple[Trip, ...]:
     """Return the trips of a round, drone by drone.
 
     Parameters
@@ -135,12 +140,17 @@ def trips_of_round(problem: Problem, plan: RoundPlan, *, are_numbered: bool) -> 
         What the round was made of.
     plan
         As it was judged.
+    holds_s
+        By how much each trip of each drone is held back.
     are_numbered
         Whether drones may fly several, so that each is called by its number.
     """
     takeoffs_j = [float(takeoff_j) for _, _, takeoff_j, _ in problem.layers] or [problem.energy.takeoff_j]
     return tuple(
-        _trip_of_round(trip, drone, number, takeoffs_j, problem.service_energies_j, are_numbered=are_numbered)
+        replace(
+            _trip_of_round(trip, drone, number, takeoffs_j, problem.service_energies_j, are_numbered=are_numbered),
+            hold_s=holds_s[drone][number] if holds_s else 0.0,
+        )
         for drone, trips in enumerate(plan.trips)
         for number, trip in enumerate(trips)
     )

@@ -15,14 +15,15 @@
 //! 11. [`plan`]: the immutable result: routes, schedule, violations.
 //! 12. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
 //! 13. [`separation`]: how well a plan keeps the drones apart.
-//! 14. [`rounds`]: rounds of several trips with windows, their plans and their judge.
-//! 15. [`bound`]: lower bounds: what no plan can beat.
-//! 16. [`kmeans`]: clusters of nearby points.
-//! 17. [`sweep`]: back-and-forth coverage of a convex polygon.
-//! 18. [`hpp`]: the paper's planner.
-//! 19. [`search`]: the min-max optimiser.
-//! 20. [`territory`]: balanced routes in territories that do not overlap.
-//! 21. [`attention`]: the attention model, a trained network that builds routes.
+//! 14. [`encounters`]: where drones come too near to each other at the same moment.
+//! 15. [`rounds`]: rounds of several trips with windows, their plans and their judge.
+//! 16. [`bound`]: lower bounds: what no plan can beat.
+//! 17. [`kmeans`]: clusters of nearby points.
+//! 18. [`sweep`]: back-and-forth coverage of a convex polygon.
+//! 19. [`hpp`]: the paper's planner.
+//! 20. [`search`]: the min-max optimiser.
+//! 21. [`territory`]: balanced routes in territories that do not overlap.
+//! 22. [`attention`]: the attention model, a trained network that builds routes.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -30,6 +31,7 @@ pub mod attention;
 pub mod bound;
 pub mod direction;
 pub mod effort;
+pub mod encounters;
 pub mod error;
 pub mod evaluate;
 pub mod frame;

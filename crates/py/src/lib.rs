@@ -7,6 +7,7 @@ mod arguments;
 mod attention;
 mod bound;
 mod effort;
+mod encounters;
 mod error;
 mod evaluate;
 mod frame;
@@ -30,6 +31,8 @@ mod _core {
     use crate::attention::AttentionModel;
     #[pymodule_export]
     use crate::bound::{lower_bound, lower_bound_of_makespan, lower_bound_of_total};
+    #[pymodule_export]
+    use crate::encounters::{encounters, least_distance};
     #[pymodule_export]
     use crate::evaluate::evaluate;
     #[pymodule_export]

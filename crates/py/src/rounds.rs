@@ -9,7 +9,7 @@ use crate::values::table;
 use numpy::PyArray2;
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
-use pondhop_core::rounds::{Fleet, RoundVisit, Rounding, TimeWindow, evaluate_round as judge, makespan_bound};
+use pondhop_core::rounds::{Fleet, RoundVisit, Rounding, TimeWindow, evaluate_held_round as judge, makespan_bound};
 use pondhop_core::search::{Goal, Options, solve_round};
 use pondhop_core::travel::Air;
 use pyo3::prelude::*;
@@ -427,13 +427,21 @@ impl RoundPlan {
 ///     What was to be flown.
 /// routes
 ///     For each drone its trips, each the visits in flying order.
+/// holds_s
+///     For each drone by how many seconds each of its trips is held back at least; none, if not given.
 ///
 /// Raises
 /// ------
 /// InvalidInput
 ///     If a trip names a visit that does not exist, or the routes are no lists of lists of whole numbers.
 #[pyfunction]
-pub fn evaluate_round(problem: &Round, routes: &Bound<'_, PyAny>) -> PyResult<RoundPlan> {
+#[pyo3(signature = (problem, routes, holds_s=None))]
+pub fn evaluate_round(
+    problem: &Round,
+    routes: &Bound<'_, PyAny>,
+    holds_s: Option<Vec<Vec<f64>>>,
+) -> PyResult<RoundPlan> {
+    let holds = holds_s.unwrap_or_default();
     let Ok(trips) = routes.extract::<Routes>() else {
         let mut faults = Faults::default();
         faults.add(
@@ -441,9 +449,9 @@ pub fn evaluate_round(problem: &Round, routes: &Bound<'_, PyAny>) -> PyResult<Ro
             format!("it is {}", shown(routes)?),
             "give for each drone a list of trips, lists of visits",
         );
-        return checked(faults, Routes::new()).and_then(|none| judged(problem, &none));
+        return checked(faults, Routes::new()).and_then(|none| judged(problem, &none, &holds));
     };
-    judged(problem, &trips)
+    judged(problem, &trips, &holds)
 }
 
 /// How early the last drone of a round can land at best: no plan that makes all visits has its last landing earlier.
@@ -463,6 +471,6 @@ pub fn round_bound(py: Python<'_>, problem: &Round) -> f64 {
     py.detach(move || makespan_bound(&round))
 }
 
-fn judged(round: &Round, trips: &[Vec<Vec<usize>>]) -> PyResult<RoundPlan> {
-    judge(&round.inner, trips).map(|inner| RoundPlan { inner }).map_err(|error| to_python(&error))
+fn judged(round: &Round, trips: &[Vec<Vec<usize>>], holds: &[Vec<f64>]) -> PyResult<RoundPlan> {
+    judge(&round.inner, trips, holds).map(|inner| RoundPlan { inner }).map_err(|error| to_python(&error))
 }

@@ -72,6 +72,9 @@ def plan(
     wind: WindOption = None,
     start: StartOption = None,
     by: ByOption = None,
+    deconflict: Annotated[
+        bool, typer.Option("--deconflict", help="Hold trips back on the ground until no two drones meet in the air.")
+    ] = False,
     figure: Annotated[
         bool | None,
         typer.Option("--figure/--no-figure", help="Draw the plan (PNG and SVG); if not said, where it can be."),
@@ -111,7 +114,14 @@ def plan(
             accept=accept or (),
         )
         advance()
-        farm_plan = planners.plan(read, chosen_fleet, wind=blowing, progress=search_progress(advance), **options)
+        farm_plan = planners.plan(
+            read,
+            chosen_fleet,
+            wind=blowing,
+            is_deconflicted=deconflict,
+            progress=search_progress(advance),
+            **options,
+        )
         advance()
         written = outputs.write_outputs(output, farm_plan, has_figure=is_drawn, units=units)
         advance(size=2.0 if is_drawn else 1.0)

@@ -9,6 +9,7 @@ from statistics import fmean
 from rich.console import Console
 from rich.table import Table
 
+from pondhop.encounters import APART_HEIGHT_M, APART_M, encounters_of
 from pondhop.farm.features import listed
 from pondhop.files.routes_json import Judgement
 from pondhop.planners import LIMIT_KINDS
@@ -18,6 +19,7 @@ from pondhop.units import (
     counted,
     duration_text,
     energy_text,
+    gap_text,
     height_text,
     length_text,
     speed_text,
@@ -46,6 +48,7 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
         console.print(_energy_table(farm_plan))
         console.print(farm_plan.battery_text)
     _print_left_out(console, farm_plan)
+    _print_encounters(console, farm_plan, units)
     console.print(f"All drones are back {duration_text(farm_plan.all_back_s)} after the first take-off.")
     bound = f"No plan is done with its longest route in less than {duration_text(solution.lower_bound_s)}"
     if farm_plan.is_round:
@@ -63,6 +66,26 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
         )
     console.print(f"Planner {solution.planner}, seed {solution.seed}, {duration_of_planning(solution.elapsed_s)}.")
     _print_assumptions(console, farm_plan, units)
+
+
+def _print_encounters(console: Console, farm_plan: FarmPlan, units: Units) -> None:
+    """Print how near drones come to each other at the same moment, where several fly."""
+    if farm_plan.num_drones_flying < 2:
+        return
+    found, trips = encounters_of(farm_plan), farm_plan.trips
+    apart = f"{gap_text(APART_M, units)} over ground or {gap_text(APART_HEIGHT_M, units)} in height"
+    held_s = sum(trip.hold_s for trip in trips)
+    if not found:
+        held = f"; trips are held back {duration_text(held_s)} in all for it" if held_s else ""
+        console.print(f"At every moment all drones are {apart} apart{held}.")
+        return
+    nearest = min(found, key=lambda encounter: encounter.distance_m)
+    one, other = (trips[index] for index in nearest.trips)
+    console.print(
+        f"Drones come nearer than {apart} {counted(len(found), 'time')}: the nearest are {one.name} and {other.name} "
+        f"at {farm_plan.clock(nearest.begin_s)}, {gap_text(nearest.distance_m, units)} over ground. "
+        + ("No hold of a trip helps." if held_s else "--deconflict holds trips back until they do not.")
+    )
 
 
 def _print_left_out(console: Console, farm_plan: FarmPlan) -> None:

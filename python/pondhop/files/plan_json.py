@@ -202,18 +202,22 @@ def _derived_round(content: Mapping[str, Any]) -> FarmPlan:
     ]
     if unknown:
         raise InvalidInput(unknown)
+    holds_s: list[list[float]] = [[] for _ in routes]
+    for route in content["routes"]:
+        holds_s[route["drone"] - 1] = [float(trip.get("hold_s", 0.0)) for trip in route["trips"]]
     are_layers_stacked = content.get("are_layers_stacked", False)
     task = farm.to_round(fleet, wind, are_layers_stacked=are_layers_stacked)
     solution = RoundSolution(
         round=task,
         problem=farm.to_problem(fleet, are_layers_stacked=are_layers_stacked),
-        plan=evaluate_round(task, routes),
+        plan=evaluate_round(task, routes, holds_s),
         planner=content["planner"],
         seed=content["seed"],
         elapsed_s=0.0,
         is_interrupted=content["is_interrupted"],
         reason=content["reason"],
         known_lower_bound_s=content["lower_bound_s"],
+        holds_s=tuple(map(tuple, holds_s)) if any(map(any, holds_s)) else (),
     )
     return FarmPlan(
         farm,
@@ -390,6 +394,7 @@ def _trip_object(farm_plan: FarmPlan, trip: Trip) -> dict[str, Any]:
         )
     return {
         "departure_s": trip.departure_s,
+        **({"hold_s": trip.hold_s} if trip.hold_s else {}),
         "arrival_s": trip.arrival_s,
         "length_m": trip.length_m,
         "energy_wh": trip.energy_j / JOULES_PER_WATT_HOUR,

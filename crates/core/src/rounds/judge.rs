@@ -21,15 +21,41 @@ const TOLERANCE: f64 = 1e-9;
 /// # Errors
 /// [`InvalidInput`] if a trip names a visit that does not exist.
 pub fn evaluate_round(round: &Round, routes: &[Vec<Vec<usize>>]) -> Result<RoundPlan, InvalidInput> {
+    evaluate_held_round(round, routes, &[])
+}
+
+/// The same, where trips are held back: trip j of route i, empty ones not counted, takes off `holds[i][j]` seconds after it might, or
+/// later; not at all held back where nothing is said.
+///
+/// # Errors
+/// As [`evaluate_round`]; if a hold is negative or no number.
+pub fn evaluate_held_round(
+    round: &Round,
+    routes: &[Vec<Vec<usize>>],
+    holds: &[Vec<f64>],
+) -> Result<RoundPlan, InvalidInput> {
     check_indices(round, routes)?;
+    check_holds(holds)?;
     let mut late = Vec::new();
-    let flown = fly_all(round, routes, &mut late);
+    let flown = fly_all(round, routes, holds, &mut late);
     let mut violations = count_violations(round, &flown);
     for (route, trips) in flown.iter().enumerate() {
         violations.extend(limit_violations(round, route, trips));
     }
     violations.extend(late);
     Ok(RoundPlan { routes: flown, violations })
+}
+
+fn check_holds(holds: &[Vec<f64>]) -> Result<(), InvalidInput> {
+    let mut faults = Faults::default();
+    for (route, holds) in holds.iter().enumerate() {
+        for (trip, hold) in holds.iter().enumerate() {
+            if !(0.0..=1e9).contains(hold) {
+                faults.add(format!("holds[{route}][{trip}]"), format!("the hold is {hold:?}"), "give 0 to 1e9 seconds");
+            }
+        }
+    }
+    faults.into_result(())
 }
 
 fn check_indices(round: &Round, routes: &[Vec<Vec<usize>>]) -> Result<(), InvalidInput> {
@@ -53,16 +79,22 @@ fn check_indices(round: &Round, routes: &[Vec<Vec<usize>>]) -> Result<(), Invali
 }
 
 /// Flies the trips of all drones, those that land first first: the turnaround after a landing begins when a place is free.
-fn fly_all(round: &Round, routes: &[Vec<Vec<usize>>], late: &mut Vec<RoundViolation>) -> Vec<Vec<Trip>> {
+fn fly_all(
+    round: &Round,
+    routes: &[Vec<Vec<usize>>],
+    holds: &[Vec<f64>],
+    late: &mut Vec<RoundViolation>,
+) -> Vec<Vec<Trip>> {
     let fleet = round.fleet();
     let mut flown: Vec<Vec<Trip>> = vec![Vec::new(); routes.len()];
     let waiting = |trips: &Vec<Vec<usize>>| trips.iter().filter(|trip| !trip.is_empty()).cloned().rev().collect();
     let mut left: Vec<Vec<Vec<usize>>> = routes.iter().map(waiting).collect();
-    let fly_next = |route: usize, left: &mut Vec<Vec<Vec<usize>>>, ready: f64| {
-        left[route].pop().map(|visits| fly_trip(round, &fleet.drone(route), &visits, ready))
+    let fly_next = |route: usize, number: usize, left: &mut Vec<Vec<Vec<usize>>>, ready: f64| {
+        let hold = holds.get(route).and_then(|holds| holds.get(number)).copied().unwrap_or(0.0);
+        left[route].pop().map(|visits| fly_trip(round, &fleet.drone(route), &visits, ready + hold))
     };
     let mut in_the_air: Vec<Option<(Trip, Vec<RoundViolation>)>> =
-        (0..routes.len()).map(|route| fly_next(route, &mut left, fleet.first_takeoff(route))).collect();
+        (0..routes.len()).map(|route| fly_next(route, 0, &mut left, fleet.first_takeoff(route))).collect();
     let mut pads_free = vec![f64::NEG_INFINITY; fleet.num_pads.min(routes.len())];
     loop {
         let landing = |(route, flight): (usize, &Option<(Trip, Vec<RoundViolation>)>)| {
@@ -78,7 +110,7 @@ fn fly_all(round: &Round, routes: &[Vec<Vec<usize>>], late: &mut Vec<RoundViolat
                 trip.ready = arrival.max(*pad) + fleet.turnaround.unwrap_or(0.0);
                 *pad = trip.ready;
             }
-            in_the_air[route] = fly_next(route, &mut left, trip.ready);
+            in_the_air[route] = fly_next(route, flown[route].len() + 1, &mut left, trip.ready);
         }
         flown[route].push(trip);
     }

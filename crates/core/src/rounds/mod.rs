@@ -15,6 +15,6 @@ pub mod plan;
 pub mod round;
 
 pub use bound::makespan_bound;
-pub use judge::evaluate_round;
+pub use judge::{evaluate_held_round, evaluate_round};
 pub use plan::{RoundPlan, RoundStop, RoundViolation, Trip};
 pub use round::{Fleet, Round, RoundVisit, Rounding, TimeWindow};
