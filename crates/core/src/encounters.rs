@@ -52,6 +52,17 @@ pub struct Encounter {
     pub vertical: f64,
 }
 
+/// Where two drones are nearest to each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Metres, whatever the direction.
+    pub distance: f64,
+    /// Indices of the tracks, the lesser first.
+    pub tracks: (usize, usize),
+    /// When, in seconds.
+    pub time: f64,
+}
+
 /// Finds every encounter of drones, in the order of their begin; only those of track `of` where it is given.
 ///
 /// # Errors
@@ -70,14 +81,13 @@ pub fn encounters(tracks: &[Track], apart: Apart, of: Option<usize>) -> Result<V
     Ok(found)
 }
 
-/// The least distance in metres, whatever its direction, between two drones at the same moment, with their tracks and the time;
-/// `None` if no two ever fly at the same time.
+/// The least distance between two drones at the same moment; `None` if no two ever fly at the same time.
 ///
 /// # Errors
 /// As [`encounters`].
-pub fn least_distance(tracks: &[Track]) -> Result<Option<(f64, (usize, usize), f64)>, InvalidInput> {
+pub fn least_distance(tracks: &[Track]) -> Result<Option<Nearest>, InvalidInput> {
     check(tracks, Apart { horizontal: 0.0, vertical: 0.0 })?;
-    let mut least: Option<(f64, (usize, usize), f64)> = None;
+    let mut least: Option<Nearest> = None;
     for (one, first) in tracks.iter().enumerate() {
         for (other, second) in tracks.iter().enumerate().skip(one + 1).filter(|(_, second)| first.drone != second.drone)
         {
@@ -87,8 +97,8 @@ pub fn least_distance(tracks: &[Track]) -> Result<Option<(f64, (usize, usize), f
                 let after = if squared > 0.0 { (-product / squared).clamp(0.0, end - begin) } else { 0.0 };
                 let distance =
                     at.iter().zip(velocity).map(|(part, speed)| (part + speed * after).powi(2)).sum::<f64>().sqrt();
-                if least.is_none_or(|(least, ..)| distance < least) {
-                    least = Some((distance, (one, other), begin + after));
+                if least.is_none_or(|least| distance < least.distance) {
+                    least = Some(Nearest { distance, tracks: (one, other), time: begin + after });
                 }
             });
         }
@@ -292,7 +302,7 @@ mod tests {
             track(0, &[(0.0, 0.0, 0.0, 0.0), (10.0, 100.0, 0.0, 0.0)]),
             track(1, &[(2.0, 50.0, 3.0, 4.0), (8.0, 50.0, 3.0, 4.0)]),
         ];
-        let (distance, pair, time) = least_distance(&tracks).unwrap().unwrap();
+        let Nearest { distance, tracks: pair, time } = least_distance(&tracks).unwrap().unwrap();
         assert!((distance - 5.0).abs() < 1e-9 && pair == (0, 1) && (time - 5.0).abs() < 1e-9);
         assert_eq!(
             least_distance(&[tracks[0].clone(), track(1, &[(20.0, 0.0, 0.0, 0.0), (30.0, 0.0, 0.0, 0.0)])]).unwrap(),

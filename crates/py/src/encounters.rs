@@ -68,7 +68,7 @@ pub fn encounters(
 #[pyfunction]
 pub fn least_distance(tracks: Vec<Flight<'_>>) -> PyResult<Option<(f64, usize, usize, f64)>> {
     let found = least(&to_tracks(&tracks)).map_err(|error| to_python(&error))?;
-    Ok(found.map(|(distance, (one, other), time)| (distance, one, other, time)))
+    Ok(found.map(|found| (found.distance, found.tracks.0, found.tracks.1, found.time)))
 }
 
 fn to_tracks(tracks: &[Flight<'_>]) -> Vec<Track> {

@@ -9,7 +9,8 @@ from statistics import fmean
 from rich.console import Console
 from rich.table import Table
 
-from pondhop.encounters import APART_HEIGHT_M, APART_M, encounters_of
+from pondhop import _core
+from pondhop.encounters import APART_HEIGHT_M, APART_M, encounters_of, tracks_of
 from pondhop.farm.features import listed
 from pondhop.files.routes_json import Judgement
 from pondhop.planners import LIMIT_KINDS
@@ -77,13 +78,19 @@ def _print_encounters(console: Console, farm_plan: FarmPlan, units: Units) -> No
     held_s = sum(trip.hold_s for trip in trips)
     if not found:
         held = f"; trips are held back {duration_text(held_s)} in all for it" if held_s else ""
-        console.print(f"At every moment all drones are {apart} apart{held}.")
+        nearest = _core.least_distance(tracks_of(farm_plan))
+        least = ""
+        if nearest is not None:
+            distance_m, one, other, time_s = nearest
+            pair = f"{trips[one].name} and {trips[other].name}"
+            least = f"; the least distance is {gap_text(distance_m, units)}, {pair} at {farm_plan.clock(time_s)}"
+        console.print(f"At every moment all drones are {apart} apart{least}{held}.")
         return
-    nearest = min(found, key=lambda encounter: encounter.distance_m)
-    one, other = (trips[index] for index in nearest.trips)
+    worst = min(found, key=lambda encounter: encounter.distance_m)
+    first, second = (trips[index] for index in worst.trips)
     console.print(
-        f"Drones come nearer than {apart} {counted(len(found), 'time')}: the nearest are {one.name} and {other.name} "
-        f"at {farm_plan.clock(nearest.begin_s)}, {gap_text(nearest.distance_m, units)} over ground. "
+        f"Drones come nearer than {apart} {counted(len(found), 'time')}: the nearest are {first.name} and {second.name} "
+        f"at {farm_plan.clock(worst.begin_s)}, {gap_text(worst.distance_m, units)} over ground. "
         + ("No hold of a trip helps." if held_s else "--deconflict holds trips back until they do not.")
     )
 
