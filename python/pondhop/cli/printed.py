@@ -89,7 +89,8 @@ def _print_encounters(console: Console, farm_plan: FarmPlan, units: Units) -> No
     worst = min(found, key=lambda encounter: encounter.distance_m)
     first, second = (trips[index] for index in worst.trips)
     console.print(
-        f"Drones come nearer than {apart} {counted(len(found), 'time')}: the nearest are {first.name} and {second.name} "
+        f"Drones come nearer than {apart} {counted(len(found), 'time')}: the nearest are {first.name} and "
+        f"{second.name} "
         f"at {farm_plan.clock(worst.begin_s)}, {gap_text(worst.distance_m, units)} over ground. "
         + ("No hold of a trip helps." if held_s else "--deconflict holds trips back until they do not.")
     )

@@ -4,7 +4,7 @@ use super::segment::Segment;
 use crate::geometry::Point;
 use crate::neighbours::{KdTree, Near};
 use crate::problem::{Energy, VehicleType, WayHome};
-use crate::rounds::{Round, TimeWindow};
+use crate::rounds::{Round, Rounding, TimeWindow};
 use crate::travel::{Leg, LegKind};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -92,6 +92,10 @@ pub(super) struct Network<'a> {
     /// Whether these are the same for all drones.
     pub are_ends_alike: bool,
     points: Vec<Point>,
+    /// Whether legs are as long as they are, not cut to tenths.
+    is_exact: bool,
+    /// A little less than what a length unit takes, so that rounding never makes it more.
+    seconds_per_length: f64,
     durations: Remembered,
     energies: Remembered,
     /// To the first visit of a trip and from the last, as flown there.
@@ -130,6 +134,8 @@ impl<'a> Network<'a> {
             are_ends_alike: ends.iter().all(|other| *other == ends[0]),
             ends,
             points,
+            is_exact: round.rounding() == Rounding::Exact,
+            seconds_per_length: (1.0 - 1e-12) / fleet.vehicle_type.speed,
             durations: Remembered::new(num_visits),
             energies: Remembered::new(if has_energy { num_visits } else { 0 }),
             out: Vec::new(),
@@ -218,6 +224,22 @@ impl<'a> Network<'a> {
         }
         let pair = from as usize * self.num_visits + to as usize;
         self.durations.get(pair, || self.way(from, to, LegKind::Between).duration)
+    }
+
+    /// No leg between these places takes less: what it takes in calm air, which is found without memory. Only where legs are exact.
+    #[inline]
+    pub fn least_duration(&self, from: u32, to: u32) -> f64 {
+        if to == self.depot() {
+            return self.home[from as usize].duration;
+        }
+        if from == self.depot() {
+            return self.out[to as usize].duration;
+        }
+        if !self.is_exact {
+            return 0.0;
+        }
+        let length = self.points[from as usize].distance(self.points[to as usize]);
+        if length == 0.0 { 0.0 } else { length * self.seconds_per_length + self.drone.leg_stop_duration }
     }
 
     /// Joules of a leg, without what [`Ends`] says.

@@ -188,9 +188,9 @@ impl Cheapest<'_> {
         let (at, depot) = (index as usize, network.depot());
         let previous = if at == 0 { depot } else { slot.visits[at - 1] };
         let next = slot.visits.get(at).copied().unwrap_or(depot);
-        // The rest of the price is never negative.
-        let known = leg_in.or(leg_out).unwrap_or(0.0) - slot.legs[at];
-        if known >= self.price {
+        let least_in = leg_in.unwrap_or_else(|| network.least_duration(previous, visit));
+        let least_out = leg_out.unwrap_or_else(|| network.least_duration(visit, next));
+        if least_in + least_out - slot.legs[at] >= self.price {
             return;
         }
         let leg_in = leg_in.unwrap_or_else(|| network.duration(previous, visit));
