@@ -8,12 +8,14 @@
 //! 1. `options`: what to search for, how long, and what a search found.
 //! 2. `objective`: what is minimised, and by what plans are compared.
 //! 3. `plain`: the engine for what is one number a route, the same both ways: all that farms are planned with today.
-//! 4. `timed`: the engine for trips with windows, loads and releases.
+//! 4. `petals`: a first plan of many trips, by the plain engine.
+//! 5. `timed`: the engine for trips with windows, loads and releases.
 //!
 //! `docs/explanation/search.md` says what was tried and what it gave.
 
 mod objective;
 mod options;
+mod petals;
 mod plain;
 mod timed;
 
@@ -39,5 +41,6 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
 /// priority come first where not all can be made. One thread; slack and start of the options are without effect.
 #[must_use]
 pub fn solve_round(round: &Round, options: &Options<'_>) -> RoundOutcome {
-    timed::solve(round, options)
+    let start = petals::petals(round, options.seed).unwrap_or_default();
+    timed::solve(round, &start, options)
 }

@@ -14,8 +14,10 @@ use crate::random::Random;
 
 /// Share of places that are passed over, of 2⁶⁴.
 const PLACE_BLINK: u64 = u64::MAX / 100;
-/// Trips of which both ends are tried, besides those that are near; a random run of them.
-const MAX_ENDS: usize = 12;
+/// Trips of which both ends are tried, besides those that are near, where visits have windows and where they have none; a random
+/// run of them.
+const MAX_TIMED_ENDS: usize = 12;
+const MAX_ENDS: usize = 5;
 /// Visits of the bank that are tried in one step besides those just taken out; a random run of them.
 const MAX_BANK: usize = 8;
 /// What a second beyond the target costs, beside the added time: the one or the other for every insertion.
@@ -164,7 +166,7 @@ impl Cheapest<'_> {
         let num_slots = self.state.trips.len();
         if num_slots > 0 {
             let begin = random.below(num_slots);
-            for offset in 0..num_slots.min(MAX_ENDS) {
+            for offset in 0..num_slots.min(if self.network.has_windows { MAX_TIMED_ENDS } else { MAX_ENDS }) {
                 let trip = (begin + offset) % num_slots;
                 let size = self.state.trips[trip].visits.len() as u32;
                 if size > 0 {

@@ -23,11 +23,11 @@ const TRIP_SHARE: f64 = 0.05;
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: u64 = 8;
 
-/// Plans trips for `round`: see [`crate::search::solve_round`].
-pub fn solve(round: &Round, options: &Options<'_>) -> RoundOutcome {
+/// Plans trips for `round`, from the trips of a start on: see [`crate::search::solve_round`].
+pub fn solve(round: &Round, start: &[Vec<Vec<usize>>], options: &Options<'_>) -> RoundOutcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let network = Network::new(round);
-    let mut search = Search::new(&network, options);
+    let mut search = Search::new(&network, start, options);
     search.run(&budget);
     search.into_outcome()
 }
@@ -54,19 +54,26 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(network: &'a Network<'a>, options: &Options<'_>) -> Self {
+    fn new(network: &'a Network<'a>, start: &[Vec<Vec<usize>>], options: &Options<'_>) -> Self {
         let mut random = Random::new(options.seed);
         let mut recreate = Recreate::default();
         let mut touched = Touched::default();
         let mut objective = Objective::new(network, options.goal);
         let mut state = State::new(network);
-        let mut first = state.clone();
         objective.target = first_target(network);
-        // Of a place that is late by rounding after all, the first plan knows nothing; the steps find others.
-        let (num_new, no_end) = (network.num_visits, f64::INFINITY);
-        let made = recreate.insert(network, &mut first, num_new, &objective, no_end, &mut random, &mut touched);
-        if made.is_ok() && objective.value(network, &first).is_finite() {
-            state = first;
+        // Of a place that is late by rounding after all, a first plan knows nothing; the steps find others.
+        for routes in [&[][..], start] {
+            let mut first = State::new(network);
+            first.adopt(network, routes);
+            let (num_new, no_end) = (first.bank.len(), f64::INFINITY);
+            let made = recreate.insert(network, &mut first, num_new, &objective, no_end, &mut random, &mut touched);
+            let is_made = made.is_ok() && objective.value(network, &first).is_finite();
+            if is_made && objective.rank(network, &first).is_better(&objective.rank(network, &state)) {
+                state = first;
+            }
+            if start.is_empty() {
+                break;
+            }
         }
         let (value, rank) = (objective.value(network, &state), objective.rank(network, &state));
         objective.target = state.longest();

@@ -147,6 +147,39 @@ impl State {
         }
     }
 
+    /// Takes over the trips of a plan, as far as they keep their limits; what does not stays in the bank.
+    pub fn adopt(&mut self, network: &Network<'_>, routes: &[Vec<Vec<usize>>]) {
+        let mut touched = Touched::default();
+        for (route, trips) in routes.iter().enumerate().take(self.routes.len()) {
+            for visits in trips {
+                let mut own = None;
+                for &visit in visits {
+                    let visit = visit as u32;
+                    for window in 0..network.windows(visit).len() as u8 {
+                        if self.places[visit as usize].trip != ABSENT {
+                            break;
+                        }
+                        let made = match own {
+                            Some(trip) => {
+                                let index = self.trips[trip as usize].visits.len() as u32;
+                                self.put_in(network, visit, Place { trip, index, window }, &mut touched)
+                            }
+                            None => {
+                                let number = self.routes[route].trips.len();
+                                self.open(network, visit, window, (route as u32, number), &mut touched)
+                            }
+                        };
+                        // A trip that was left without a visit is closed again.
+                        own = own.or(Some(self.places[visit as usize].trip)).filter(|&trip| trip != ABSENT);
+                        if made.is_err() {
+                            return;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     /// When the last drone has landed for good.
     pub fn longest(&self) -> f64 {
         self.routes.iter().fold(0.0, |longest, route| if route.finish > longest { route.finish } else { longest })
