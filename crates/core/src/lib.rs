@@ -15,8 +15,8 @@
 //! 11. [`plan`]: the immutable result: routes, schedule, violations.
 //! 12. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
 //! 13. [`separation`]: how well a plan keeps the drones apart.
-//! 14. [`rounds`]: rounds of several trips with windows, their plans and their judge.
-//! 15. [`bound`]: lower bounds: what no plan can beat.
+//! 14. [`bound`]: lower bounds: what no plan can beat.
+//! 15. [`rounds`]: rounds of several trips with windows, their plans, their judge and their bounds.
 //! 16. [`kmeans`]: clusters of nearby points.
 //! 17. [`sweep`]: back-and-forth coverage of a convex polygon.
 //! 18. [`hpp`]: the paper's planner.

@@ -157,6 +157,12 @@ impl Round {
         &self.fleet
     }
 
+    /// How legs are counted.
+    #[must_use]
+    pub const fn rounding(&self) -> Rounding {
+        self.rounding
+    }
+
     /// The leg between two places, as a drone of this kind flies it.
     ///
     /// # Panics
