@@ -57,8 +57,8 @@ fn random_fleet(random: &mut Random) -> Fleet {
     let unlimited_or = |random: &mut Random, least: f64, more: usize| {
         if random.below(2) == 0 { f64::INFINITY } else { least + number(random, more) }
     };
-    let way_home =
-        (random.below(2) == 0).then(|| WayHome { speed: 1.0 + number(random, 3), fixed_duration: number(random, 9) });
+    let way_home = (random.below(2) == 0)
+        .then(|| WayHome { speed: 1.0 + 4.0 * number(random, 3), fixed_duration: number(random, 9) });
     let energy = Energy {
         takeoff_energy: number(random, 30),
         leg_power: 3.0,
@@ -88,7 +88,7 @@ fn random_fleet(random: &mut Random) -> Fleet {
     let wind = Point::new(number(random, 5) - 2.0, number(random, 5) - 2.0);
     Fleet {
         layers,
-        air: Air { wind, max_airspeed: 3.0 + number(random, 3), drag_power: 0.1 },
+        air: Air { wind, max_airspeed: unlimited_or(random, 3.0, 3), drag_power: 0.1 },
         capacity: 4.0 + number(random, 8),
         shift: TimeWindow { earliest: number(random, 20), latest: 300.0 + number(random, 300) },
         takeoff_interval: number(random, 5),
@@ -174,6 +174,18 @@ fn a_way_against_the_wind_counts() {
     fleet.vehicle_type.speed = 10.0;
     let visits: Vec<RoundVisit> = (1..=8).map(|place| visit(10.0 * f64::from(place), 0.0, 0.0, &[])).collect();
     assert_near(makespan_bound(&round(visits, fleet)), 28.0);
+}
+
+#[test]
+fn a_fast_way_home_makes_many_trips_faster_than_one() {
+    // Four visits 100 s out and 1 s back, by one drone without a turnaround.
+    let mut fleet = fleet(1, Some(0.0));
+    fleet.vehicle_type.way_home = Some(WayHome { speed: 100.0, fixed_duration: 0.0 });
+    let places = [(100.0, 0.0), (0.0, 100.0), (-100.0, 0.0), (0.0, -100.0)];
+    let visits = places.iter().map(|&(x, y)| visit(x, y, 0.0, &[])).collect();
+    let task = round(visits, fleet);
+    assert_near(makespan_bound(&task), 404.0);
+    assert_near(evaluate_round(&task, &[vec![vec![0], vec![1], vec![2], vec![3]]]).unwrap().makespan(), 404.0);
 }
 
 #[test]

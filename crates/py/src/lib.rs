@@ -43,7 +43,7 @@ mod _core {
     #[pymodule_export]
     use crate::problem::{Energy, Problem};
     #[pymodule_export]
-    use crate::rounds::{Round, RoundPlan, RoundViolation, Trip, evaluate_round, search_round};
+    use crate::rounds::{Round, RoundPlan, RoundViolation, Trip, evaluate_round, round_bound, search_round};
     #[pymodule_export]
     use crate::search::search;
     #[pymodule_export]

@@ -9,7 +9,7 @@ use crate::values::table;
 use numpy::PyArray2;
 use pondhop_core::error::Faults;
 use pondhop_core::geometry::Point;
-use pondhop_core::rounds::{Fleet, RoundVisit, Rounding, TimeWindow, evaluate_round as judge};
+use pondhop_core::rounds::{Fleet, RoundVisit, Rounding, TimeWindow, evaluate_round as judge, makespan_bound};
 use pondhop_core::search::{Goal, Options, solve_round};
 use pondhop_core::travel::Air;
 use pyo3::prelude::*;
@@ -448,4 +448,20 @@ pub fn evaluate_round(problem: &Round, routes: &Bound<'_, PyAny>) -> PyResult<Ro
 
 fn judged(round: &Round, trips: &[Vec<Vec<usize>>]) -> PyResult<RoundPlan> {
     judge(&round.inner, trips).map(|inner| RoundPlan { inner }).map_err(|error| to_python(&error))
+}
+
+/// When the last drone lands at the earliest, whatever the plan, if it makes all visits and breaks no rule.
+///
+/// Parameters
+/// ----------
+/// problem
+///     What is to be flown.
+///
+/// Returns
+/// -------
+/// float
+///     In seconds; infinite if there is proof that there is no such plan.
+#[pyfunction]
+pub fn round_bound(py: Python<'_>, problem: &Round) -> f64 {
+    py.detach(|| makespan_bound(&problem.inner))
 }

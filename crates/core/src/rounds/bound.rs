@@ -263,12 +263,22 @@ fn one_visit(facts: &Facts<'_>, starts: &[f64]) -> f64 {
 /// How long the drones fly if each flies one trip, as many visits as it likes, in calm air.
 fn one_trip_a_drone(facts: &Facts<'_>) -> f64 {
     // Legs without their second decimal have no triangle inequality, and what rests on it does not hold.
-    if facts.round.rounding() != Rounding::Exact {
+    if facts.round.rounding() != Rounding::Exact || saves_time_at_depot(facts) {
         return 0.0;
     }
     let visits = facts.visits().iter().map(|visit| visit.visit).collect();
     let problem = Problem::new(Depot { position: facts.round.depot() }, visits, facts.drone);
     problem.map_or(0.0, |problem| lower_bound_of_makespan(&problem))
+}
+
+/// Whether coming home between two visits may take less than flying straight from one to the other: where the way home is faster
+/// than other legs, by more than landing, turnaround and take-off take.
+fn saves_time_at_depot(facts: &Facts<'_>) -> bool {
+    let Some(way_home) = facts.drone.way_home else { return false };
+    let distances = (0..facts.visits().len()).map(|visit| facts.round.depot().distance(facts.position(visit)));
+    let saved = distances.fold(0.0, f64::max) * (1.0 / facts.drone.speed - 1.0 / way_home.speed);
+    let lost = way_home.fixed_duration + facts.turnaround + facts.drone.takeoff_duration;
+    facts.round.fleet().turnaround.is_some() && saved > lost
 }
 
 /// What there is to know about the trips of a round.
