@@ -16,8 +16,8 @@
 //! 12. [`evaluate`]: the one truth: a plan recomputed from a problem and bare routes.
 //! 13. [`separation`]: how well a plan keeps the drones apart.
 //! 14. [`encounters`]: where drones come too near to each other at the same moment.
-//! 15. [`rounds`]: rounds of several trips with windows, their plans and their judge.
-//! 16. [`bound`]: lower bounds: what no plan can beat.
+//! 15. [`bound`]: lower bounds: what no plan can beat.
+//! 16. [`rounds`]: rounds of several trips with windows, their plans, their judge and their bounds.
 //! 17. [`kmeans`]: clusters of nearby points.
 //! 18. [`sweep`]: back-and-forth coverage of a convex polygon.
 //! 19. [`hpp`]: the paper's planner.

@@ -13,7 +13,7 @@ const FIRST_STEP: f64 = 0.25;
 const MOMENTUM: f64 = 0.3;
 
 /// Penalties and the tree that they lead to. Each step overwrites the tree of the one before.
-pub(super) struct Ascent<'a> {
+pub(crate) struct Ascent<'a> {
     graph: &'a SparseGraph,
     penalties: Vec<f64>,
     /// Legs of the relaxation at each pond.

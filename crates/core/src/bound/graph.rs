@@ -6,7 +6,7 @@ use crate::neighbours::KdTree;
 use crate::problem::Problem;
 
 /// The ponds in descending order of their distance from the depot, with the legs between near ones.
-pub(super) struct SparseGraph {
+pub(crate) struct SparseGraph {
     /// What the leg from the depot to each pond costs, and the leg from there to the depot.
     pub first_legs: Vec<f64>,
     pub last_legs: Vec<f64>,
@@ -24,7 +24,7 @@ pub(super) struct SparseGraph {
 
 /// A leg between two ponds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Leg {
+pub(crate) struct Leg {
     /// The pond of higher index, which is not farther from the depot than the other.
     pub nearer: usize,
     pub farther: usize,
@@ -32,7 +32,7 @@ pub(super) struct Leg {
 }
 
 impl SparseGraph {
-    pub fn new(problem: &Problem, price: &impl Price, num_neighbours: usize) -> Self {
+    pub(super) fn new(problem: &Problem, price: &impl Price, num_neighbours: usize) -> Self {
         let depot = problem.depot().position;
         let mut visits = problem.visits().to_vec();
         visits.sort_by(|a, b| depot.distance(b.position).total_cmp(&depot.distance(a.position)));
@@ -75,6 +75,38 @@ impl SparseGraph {
             // The time of a stop is no measure of how much penalties have to differ; here it hardly counts.
             mean_nearest_cost: price.between(sum_nearest) / ponds.len() as f64,
         }
+    }
+
+    /// The graph of places whose legs cost at least so much, whatever they mean: `first_legs` out of the depot, `last_legs` back to
+    /// it, and `between` two places by their index, the same in both directions. Costs may be negative. O(n^2) for n places.
+    pub fn of_costs(
+        first_legs: Vec<f64>,
+        last_legs: Vec<f64>,
+        num_neighbours: usize,
+        between: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let num_places = first_legs.len();
+        let (mut legs, mut half_reaches, mut sum_nearest) = (Vec::new(), Vec::new(), 0.0);
+        let mut near: Vec<(f64, usize)> = Vec::new();
+        for place in 0..num_places {
+            near.clear();
+            near.extend((0..num_places).filter(|&other| other != place).map(|other| (between(place, other), other)));
+            if near.len() > num_neighbours {
+                // The first leg that is left out costs no more than all others that are.
+                let (_, first_out, _) =
+                    near.select_nth_unstable_by(num_neighbours, |one, other| one.0.total_cmp(&other.0));
+                half_reaches.push(0.5 * first_out.0);
+                near.truncate(num_neighbours);
+            }
+            let nearest = near.iter().map(|&(cost, _)| cost).fold(f64::INFINITY, f64::min);
+            sum_nearest += if nearest.is_finite() { nearest } else { 0.0 };
+            let leg = |&(cost, other): &(f64, usize)| Leg { nearer: place.max(other), farther: place.min(other), cost };
+            legs.extend(near.iter().map(leg));
+        }
+        legs.sort_unstable_by_key(|leg| (leg.nearer, leg.farther));
+        legs.dedup_by_key(|leg| (leg.nearer, leg.farther));
+        let mean_nearest_cost = sum_nearest / num_places as f64;
+        Self { first_legs, last_legs, services: Vec::new(), there_and_back: 0.0, legs, half_reaches, mean_nearest_cost }
     }
 
     pub fn num_ponds(&self) -> usize {

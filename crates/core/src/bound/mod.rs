@@ -31,12 +31,12 @@ mod price;
 mod tree;
 
 use crate::problem::Problem;
-use ascent::Ascent;
-use graph::SparseGraph;
+pub(crate) use ascent::Ascent;
+pub(crate) use graph::SparseGraph;
 use price::{Durations, Lengths};
 
 /// Neighbours of a pond in the sparse graph: enough that on a grid pairs beyond them hardly enter a tree.
-const NUM_NEIGHBOURS: usize = 12;
+pub(crate) const NUM_NEIGHBOURS: usize = 12;
 /// Shares of the ponds, the farthest ones, among which the best bound is sought.
 const PARTS: [f64; 11] = [0.97, 0.94, 0.91, 0.87, 0.82, 0.75, 0.66, 0.55, 0.43, 0.3, 0.15];
 /// Keeps a bound that equals the optimum from exceeding it by rounding.

@@ -7,14 +7,14 @@
 //! 1. [`round`]: what is to be flown; validated once, then immutable.
 //! 2. [`plan`]: the immutable result: routes of trips, their schedule, violations.
 //! 3. [`judge`]: the one truth: a plan recomputed from a round and bare routes.
-//! 4. [`bound`]: how early the last drone can land at best.
+//! 4. [`bound`]: when the last drone lands at the earliest, and how many trips there are at least.
 
 pub mod bound;
 pub mod judge;
 pub mod plan;
 pub mod round;
 
-pub use bound::makespan_bound;
+pub use bound::{fewest_trips, makespan_bound};
 pub use judge::{evaluate_held_round, evaluate_round};
 pub use plan::{RoundPlan, RoundStop, RoundViolation, Trip};
 pub use round::{Fleet, Round, RoundVisit, Rounding, TimeWindow};
