@@ -336,6 +336,7 @@ def search_round(
     seed: int = 1,
     time_limit_s: float | None = None,
     iterations: int | None = None,
+    threads: int = 1,
     objective: Literal["max", "total"] = "max",
     progress: Callable[[float, int, float], object] | None = None,
 ) -> tuple[list[list[list[int]]], float, int, bool]: ...

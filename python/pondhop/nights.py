@@ -46,12 +46,13 @@ class Effort:
 
     Attributes
     ----------
-    seed, time_limit_s, iterations, objective, progress
+    seed, time_limit_s, threads, iterations, objective, progress
         As of `pondhop.planners.Options`.
     """
 
     seed: int = 1
     time_limit_s: float | None = None
+    threads: int = 1
     iterations: int | None = None
     objective: str = "max"
     progress: Callable[[float, int, float], object] | None = None
@@ -136,6 +137,7 @@ def _searched(task: Round, effort: Effort, default_steps: int) -> tuple[Trips, f
         seed=effort.seed,
         time_limit_s=effort.time_limit_s,
         iterations=steps,
+        threads=effort.threads,
         objective="total" if effort.objective == "total" else "max",
         progress=effort.progress,
     )

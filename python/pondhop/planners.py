@@ -481,7 +481,7 @@ def plan(
     return replace(farm_plan, obstacles=(*beyond, *missions.obstacles(farm_plan)))
 
 
-_OF_ROUND = frozenset({"time_limit_s", "iterations", "objective"})
+_OF_ROUND = frozenset({"time_limit_s", "threads", "iterations", "objective"})
 """Options that the search for rounds knows, besides those that all planners have."""
 
 
@@ -496,7 +496,9 @@ def _plan_round(
         faults.append(Fault("start", "a round of trips cannot begin with routes yet", "leave it out"))
     if chosen is None or faults:
         raise InvalidInput(faults)
-    effort = nights.Effort(int(wishes.seed), wishes.time_limit_s, wishes.iterations, wishes.objective, wishes.progress)
+    effort = nights.Effort(
+        int(wishes.seed), wishes.time_limit_s, wishes.threads, wishes.iterations, wishes.objective, wishes.progress
+    )
     if planner in ("auto", "search"):
         passed_over = replace(PLANNERS["search"], obeys=_OF_ROUND, also_obeys=_nothing_more).passed_over(wishes)
         return nights.plan_round(farm, fleet, wind, effort, passed_over=passed_over)

@@ -193,6 +193,13 @@ fn the_same_seed_gives_the_same_routes() {
     for goal in [Goal::Max, Goal::Total] {
         let task = random_round(&mut Random::new(3), 25);
         assert_eq!(solved(&task, goal, 500, 4), solved(&task, goal, 500, 4));
+        let options = Options { seed: 4, goal, max_iterations: Some(500), num_threads: 3, ..Options::default() };
+        let threads = [(); 2].map(|()| solve_round(&task, &options).routes);
+        assert_eq!(threads[0], threads[1]);
+        // The best of three chains is no worse than the first of them.
+        let ranks = [&threads[0], &solved(&task, goal, 500, 4)]
+            .map(|routes| rank(&task, &evaluate_round(&task, routes).unwrap(), goal));
+        assert!(!is_better(ranks[1], ranks[0]));
     }
 }
 

@@ -5,6 +5,7 @@ use crate::arguments::{Real, Seed, Whole, Word, checked, shown};
 use crate::effort::{callback, limits, watched};
 use crate::error::to_python;
 use crate::problem::Problem;
+use crate::search::MAX_THREADS;
 use crate::values::table;
 use numpy::PyArray2;
 use pondhop_core::error::Faults;
@@ -166,6 +167,8 @@ fn windows_of(
 ///     Same seed and iterations: same routes.
 /// time_limit_s, iterations
 ///     Wall time and steps; at least one of them.
+/// threads
+///     Chains that search side by side.
 /// objective
 ///     ``"max"``: the last landing; ``"total"``: the time that all drones fly.
 /// progress
@@ -187,13 +190,15 @@ fn windows_of(
 /// InvalidInput
 ///     With every argument that has no meaning.
 #[pyfunction]
-#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, objective=Word::default(), progress=None))]
+#[pyo3(signature = (problem, *, seed=Seed::of(1), time_limit_s=None, iterations=None, threads=Whole::of(1), objective=Word::default(), progress=None))]
+#[allow(clippy::too_many_arguments)]
 pub fn search_round(
     py: Python<'_>,
     problem: &Round,
     seed: Seed,
     time_limit_s: Option<Real>,
     iterations: Option<Whole>,
+    threads: Whole,
     objective: Word<'_>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Routes, f64, u64, bool)> {
@@ -204,12 +209,16 @@ pub fn search_round(
     if time_limit_s.is_none() && iterations.is_none() {
         faults.add("time_limit_s", "there is no limit to the effort", "give time_limit_s or iterations");
     }
+    let action = format!("give the cores there are, 1 to {MAX_THREADS}");
+    let num_threads = threads.number(&mut faults, "threads", &(1..=MAX_THREADS), &action) as usize;
     let goal = objective.meaning(&mut faults, "objective", &[("max", Goal::Max), ("total", Goal::Total)])?;
     let progress = callback(&mut faults, progress)?;
     checked(faults, ())?;
     let round = Arc::clone(&problem.inner);
     let (outcome, elapsed_s, is_interrupted) = watched(py, begin, time_limit_s, progress, move |clock, watch| {
-        solve_round(&round, &Options { seed, max_iterations: iterations, clock, watch, goal, ..Options::default() })
+        let options =
+            Options { seed, max_iterations: iterations, clock, watch, num_threads, goal, ..Options::default() };
+        solve_round(&round, &options)
     })?;
     Ok((outcome.routes, elapsed_s, outcome.num_iterations, is_interrupted))
 }

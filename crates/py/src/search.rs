@@ -107,7 +107,7 @@ pub fn search(
 }
 
 /// Beyond this a mistyped number would exhaust the machine.
-const MAX_THREADS: u64 = 1024;
+pub const MAX_THREADS: u64 = 1024;
 
 fn check_start(problem: &Task, routes: &[Vec<usize>]) -> PyResult<()> {
     let plan = pondhop_core::evaluate::evaluate(&problem.0, routes).map_err(|error| to_python(&error))?;

@@ -159,6 +159,7 @@ def _solve_round(
             seed=options.get("seed", 1),
             time_limit_s=seconds,
             iterations=steps,
+            threads=options.get("threads", 1),
             objective=options.get("objective", "max"),
             progress=search_progress(advance),
         )
@@ -204,7 +205,6 @@ def _check_round_options(start: Path | None, **options: Unpack[PlainOptions]) ->
         ("--start", start is not None),
         ("--slack", options.get("slack_percent", 0.0) != 0.0),
         ("--separate-airspace", options.get("has_separate_airspace", False)),
-        ("--threads", options.get("threads", 1) != 1),
         ("--planner", options.get("planner", "auto") not in {"auto", "search"}),
     ):
         if is_given:

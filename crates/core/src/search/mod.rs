@@ -38,7 +38,7 @@ pub fn solve(problem: &Problem, options: &Options<'_>) -> Outcome {
 }
 
 /// Plans trips for `round` so that the last drone lands early, or what all fly is short, as the goal says; the visits of most
-/// priority come first where not all can be made. One thread; slack and start of the options are without effect.
+/// priority come first where not all can be made. Threads search each for itself; slack and start of the options are without effect.
 #[must_use]
 pub fn solve_round(round: &Round, options: &Options<'_>) -> RoundOutcome {
     let start = petals::petals(round, options.seed).unwrap_or_default();

@@ -59,7 +59,7 @@ pub struct Outcome {
 }
 
 /// What a search found for a round.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RoundOutcome {
     /// For each drone that flies its trips, each the visits in flying order; no visit twice. What no trip could make is left out.
     pub routes: Vec<Vec<Vec<usize>>>,

@@ -9,7 +9,7 @@ use super::state::{OverLimit, State, Touched};
 use crate::effort::{Budget, Effort};
 use crate::random::Random;
 use crate::rounds::{Round, RoundViolation, evaluate_round};
-use crate::search::options::{Options, RoundOutcome};
+use crate::search::options::{Goal, Options, RoundOutcome};
 
 /// Temperatures at the beginning and at the end, in mean legs of the first plan.
 const HOT: f64 = 0.3;
@@ -27,14 +27,29 @@ const STEPS_PER_LOOK: u64 = 8;
 pub fn solve(round: &Round, start: &[Vec<Vec<usize>>], options: &Options<'_>) -> RoundOutcome {
     let budget = Budget::new(options.max_iterations, options.clock, options.watch);
     let network = Network::new(round);
-    let mut search = Search::new(&network, start, options);
-    search.run(&budget);
-    search.into_outcome()
+    let chain = |index: u64| {
+        let mut search = Search::new(&network, start, options, options.seed.wrapping_add(index));
+        search.run(&budget);
+        search
+    };
+    let chains: Vec<Search<'_>> = std::thread::scope(|scope| {
+        let chain = &chain;
+        let others: Vec<_> = (1..options.num_threads as u64).map(|index| scope.spawn(move || chain(index))).collect();
+        let first = chain(0);
+        let rest =
+            others.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        std::iter::once(first).chain(rest).collect()
+    });
+    let num_iterations = chains[0].num_iterations;
+    // The first of equals, so that threads that find nothing better change nothing.
+    let best = chains.into_iter().reduce(Search::better);
+    best.map_or_else(RoundOutcome::default, |best| RoundOutcome { num_iterations, ..best.into_outcome() })
 }
 
 /// An annealing chain.
 struct Search<'a> {
     network: &'a Network<'a>,
+    goal: Goal,
     objective: Objective,
     random: Random,
     ruin: Ruin,
@@ -54,8 +69,8 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(network: &'a Network<'a>, start: &[Vec<Vec<usize>>], options: &Options<'_>) -> Self {
-        let mut random = Random::new(options.seed);
+    fn new(network: &'a Network<'a>, start: &[Vec<Vec<usize>>], options: &Options<'_>, seed: u64) -> Self {
+        let mut random = Random::new(seed);
         let mut recreate = Recreate::default();
         let mut touched = Touched::default();
         let mut objective = Objective::new(network, options.goal);
@@ -79,6 +94,7 @@ impl<'a> Search<'a> {
         objective.target = state.longest();
         Self {
             network,
+            goal: options.goal,
             objective,
             random,
             ruin: Ruin::default(),
@@ -179,6 +195,16 @@ impl<'a> Search<'a> {
             self.best.copy_touched(&self.current, &self.since_best);
             self.since_best.clear();
         }
+    }
+
+    /// The one with the better plan; this one of equals.
+    fn better(self, other: Self) -> Self {
+        if other.final_rank().is_better(&self.final_rank()) { other } else { self }
+    }
+
+    /// How good the best plan is, as the goal says.
+    fn final_rank(&self) -> Rank {
+        Objective::new(self.network, self.goal).rank(self.network, &self.best)
     }
 
     fn into_outcome(self) -> RoundOutcome {
