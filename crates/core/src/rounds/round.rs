@@ -290,7 +290,6 @@ mod tests {
                 "fleet.air.drag_power",
                 "fleet.air.wind",
                 "visits[1].release",
-                "visits[1].load",
                 "visits[1].priority",
                 "visits[1].windows[1]",
                 "visits[1].load",
