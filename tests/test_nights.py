@@ -15,7 +15,7 @@ import pondhop
 from hand_made import make_farm
 from pondhop import Farm, FarmPlan, Fleet, InvalidInput, Pond, Wind, generate_farm, read_plan_json, write_plan_json
 from pondhop.cli.main import app
-from pondhop.encounters import encounters_of, tracks_of
+from pondhop.encounters import encounters_of, encounters_text, tracks_of
 from pondhop.fleet import parse_wind, read_fleet
 from pondhop.fleet.clock import clock_after, seconds_between, windows_after
 from pondhop.nights import Effort, sizes
@@ -344,3 +344,86 @@ def test_a_track_is_where_the_trip_says(night: FarmPlan) -> None:
         steps = np.diff(knots, axis=0)
         speeds = np.hypot(steps[:, 1], steps[:, 2]) / np.maximum(steps[:, 0], 1e-9)
         assert speeds[steps[:, 0] > 1e-6].max() <= FLEET.return_speed_m_s + 1e-6
+
+
+def test_what_no_plan_can_do_is_planned_and_told_all_the_same(farm: Farm, tmp_path: Path) -> None:
+    # A battery that reaches only near ponds: a bound proves that no plan visits all.
+    for fleet in (replace(FLEET, battery_wh=20.0), Fleet(1, battery_wh=40.0), replace(FLEET, reserve_percent=95.0)):
+        plan = pondhop.plan(farm, fleet, wind=Wind(4.0, 225.0), iterations=500)
+        assert plan.left_out
+        assert len(plan.unserved) == len(plan.left_out)
+        write_outputs(tmp_path / "out", plan, has_figure=False)
+        content = json.loads((tmp_path / "out" / "plan.json").read_text())
+        assert content["gap_percent"] is None
+        assert read_plan_json(tmp_path / "out" / "plan.json").left_out == plan.left_out
+
+
+def test_trips_that_wait_for_windows_are_held_apart_too(farm: Farm, tmp_path: Path) -> None:
+    ponds = tuple(
+        replace(pond, time_windows=(("22:30", "22:50"),) if index % 2 else (("04:00", "04:20"),))
+        for index, pond in enumerate(farm.ponds)
+    )
+    timed = replace(farm, ponds=ponds)
+    apart = pondhop.plan(timed, FLEET, is_deconflicted=True, iterations=3000)
+    assert apart.is_feasible
+    assert not encounters_of(apart)
+    # The crew starts trips at their times, and the night is told from its first take-off on.
+    write_outputs(tmp_path / "out", apart, has_figure=False)
+    text = (tmp_path / "out" / "missions" / "README.txt").read_text()
+    assert "Start each trip at its time" in text
+    assert all(f"{apart.clock(trip.departure_s)}  {trip.name}" in text for trip in apart.trips)
+    assert apart.span_s < apart.all_back_s - 900.0
+
+
+def test_the_crew_is_told_what_is_not_sampled_and_how_near_drones_come(farm: Farm, tmp_path: Path) -> None:
+    plan = pondhop.plan(farm, replace(FLEET, end="22:12"), iterations=2000)
+    assert plan.left_out
+    write_outputs(tmp_path / "out", plan, has_figure=False)
+    text = " ".join((tmp_path / "out" / "missions" / "README.txt").read_text().split())
+    assert "NOT SAMPLED in this round" in text
+    assert encounters_text(plan).partition(":")[0] in text
+
+
+def test_the_reason_names_the_windows_where_they_are_the_cause(farm: Farm) -> None:
+    def reason_with(*windows: tuple[str, str]) -> str:
+        ponds = (replace(farm.ponds[0], time_windows=windows), *farm.ponds[1:])
+        (unserved,) = pondhop.plan(replace(farm, ponds=ponds), FLEET, iterations=1500).unserved
+        return unserved.reason
+
+    assert "21:00-21:30" in reason_with(("21:00", "21:30"))
+    ponds = tuple(replace(pond, time_windows=(("23:00", "23:00"),)) for pond in farm.ponds)
+    plan = pondhop.plan(replace(farm, ponds=ponds), FLEET, iterations=500)
+    assert {unserved.reason for unserved in plan.unserved} == {
+        "no drone has time for it within the time windows (23:00-23:00)"
+    }
+
+
+def test_wind_above_the_limit_of_landings_is_a_note(farm: Farm) -> None:
+    plan = pondhop.plan(farm, FLEET, wind=Wind(6.0, 225.0), iterations=300)
+    assert any("does not notice" in note for note in plan.notes)
+    assert not any("does not notice" in note for note in pondhop.plan(farm, FLEET, iterations=300).notes)
+
+
+@pytest.mark.parametrize(
+    ("value", "windows"),
+    [
+        ([], ()),
+        ("22:10\N{EN DASH}22:20", (("22:10", "22:20"),)),
+        (["22:30-23:30", "01:00-02:00"], (("22:30", "23:30"), ("01:00", "02:00"))),
+        (["22:30", "23:30"], (("22:30", "23:30"),)),
+    ],
+)
+def test_windows_may_be_written_as_people_do(
+    tmp_path: Path, value: object, windows: tuple[tuple[str, str], ...]
+) -> None:
+    path = tmp_path / "farm.geojson"
+    features = [
+        {
+            "type": "Feature",
+            "properties": properties,
+            "geometry": {"type": "Point", "coordinates": [longitude, 33.4]},
+        }
+        for properties, longitude in (({"id": "P1", "time_windows": value}, -90.9), ({"role": "depot"}, -90.901))
+    ]
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    assert pondhop.read_farm(path).ponds[0].time_windows == windows

@@ -21,6 +21,7 @@ from pondhop.fleet.layers import Layers
 from pondhop.fleet.times import climb_s, landing_s
 from pondhop.solution import FarmPlan, RoundSolution
 from pondhop.trips import Trip
+from pondhop.units import Units, counted, duration_text, gap_text
 
 APART_M, APART_HEIGHT_M = 15.0, 2.0
 """Drones keep the one or the other: positions are known to a metre or two, heights to half a metre each."""
@@ -108,6 +109,28 @@ def encounters_of(farm_plan: FarmPlan) -> list[Encounter]:
             tracks_of(farm_plan), APART_M, APART_HEIGHT_M
         )
     ]
+
+
+def encounters_text(farm_plan: FarmPlan, units: Units = "metric") -> str:
+    """Return how near the drones of a plan come to each other at the same moment, in a sentence or two."""
+    found, trips = encounters_of(farm_plan), farm_plan.trips
+    apart = f"{gap_text(APART_M, units)} over ground or {gap_text(APART_HEIGHT_M, units)} in height"
+    held_s = sum(trip.hold_s for trip in trips)
+    if not found:
+        held = f"; trips are held back {duration_text(held_s)} in all for it" if held_s else ""
+        nearest, least = _core.least_distance(tracks_of(farm_plan)), ""
+        if nearest is not None:
+            distance_m, one, other, time_s = nearest
+            pair = f"{trips[one].name} and {trips[other].name}"
+            least = f"; the least distance is {gap_text(distance_m, units)}, {pair} {farm_plan.moment(time_s)}"
+        return f"At every moment all drones are {apart} apart{least}{held}."
+    worst = min(found, key=lambda encounter: encounter.distance_m)
+    first, second = (trips[index] for index in worst.trips)
+    return (
+        f"Drones come nearer than {apart} {counted(len(found), 'time')}: the nearest are {first.name} and "
+        f"{second.name} {farm_plan.moment(worst.begin_s)}, {gap_text(worst.distance_m, units)} over ground. "
+        + ("No hold of a trip helps." if held_s else "--deconflict holds trips back until they do not.")
+    )
 
 
 def held_apart(farm_plan: FarmPlan) -> FarmPlan:

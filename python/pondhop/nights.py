@@ -16,7 +16,7 @@ from pondhop._core import Problem, Round
 from pondhop.errors import Fault, InvalidInput
 from pondhop.farm.model import Farm
 from pondhop.fleet import Fleet, Wind
-from pondhop.fleet.clock import clock_after
+from pondhop.fleet.clock import DAY_S, clock_after
 from pondhop.solution import FarmPlan, RoundSolution, Unserved
 from pondhop.units import counted, duration_text, energy_text
 
@@ -110,7 +110,14 @@ def plan_round(
     farm_plan = FarmPlan(farm, fleet, solution, are_layers_stacked=are_stacked, wind=wind)
     if not farm_plan.left_out or is_interrupted:
         return farm_plan
-    return replace(farm_plan, unserved=tuple(_reasons(farm_plan, effort.seed)))
+    try:
+        return replace(farm_plan, unserved=tuple(_reasons(farm_plan, effort.seed)))
+    except _Stopped:
+        return replace(farm_plan, solution=replace(solution, is_interrupted=True))
+
+
+class _Stopped(Exception):  # noqa: N818
+    """Somebody stopped the search for remedies."""
 
 
 def _task(farm: Farm, fleet: Fleet, wind: Wind) -> tuple[Round, Problem, bool]:
@@ -166,54 +173,71 @@ def _breaks_alone(task: Round, drone: int, ponds: list[int]) -> list[_core.Round
 
 
 def _reasons(farm_plan: FarmPlan, seed: int) -> Iterator[Unserved]:
-    """Return why each pond that is left out is, and what would help."""
-    fleet, task = farm_plan.fleet, farm_plan.solution.round  # type: ignore[union-attr]
-    alone = {pond: _breaks_alone(task, 0, [pond]) for pond in farm_plan.left_out}
-    late_s = [broken[0].value or 0.0 for broken in alone.values() if broken and broken[0].kind == "after_the_end"]
-    hopeless = {
-        pond: _out_of_reach(farm_plan, pond, broken[0], max(late_s, default=0.0))
-        for pond, broken in alone.items()
-        if broken
-    }
-    waiting = [pond for pond in farm_plan.left_out if pond not in hopeless]
-    remedies = tuple(_remedies(farm_plan, frozenset(hopeless), seed)) if waiting else ()
-    if fleet.swap_s is None:
-        reason = "every drone flies once, and its trip is full without it"
-    elif fleet.end is not None:
-        reason = f"the fleet has no time left for it before the end at {fleet.end}"
-    else:
-        reason = "no drone has time for it within its time windows"
-    for pond in farm_plan.left_out:
-        yield hopeless.get(pond) or Unserved(pond, reason, remedies)
+    """Return why each pond that is left out is, and what would help.
 
-
-def _out_of_reach(farm_plan: FarmPlan, pond: int, broken: _core.RoundViolation, most_late_s: float) -> Unserved:
-    """Return why a pond cannot be sampled even by a drone that does nothing else.
-
-    Parameters
-    ----------
-    most_late_s
-        By how much the worst of such ponds brings a drone home after the end.
+    Raises
+    ------
+    _Stopped
+        If somebody did not want to wait for it.
     """
+    task = farm_plan.solution.round  # type: ignore[union-attr]
+    alone = {pond: _breaks_alone(task, 0, [pond]) for pond in farm_plan.left_out}
+    late = {pond for pond, broken in alone.items() if broken and broken[0].kind == "after_the_end"}
+    hopeless = {pond: _out_of_reach(farm_plan, pond, broken[0]) for pond, broken in alone.items() if broken}
+    never = frozenset(hopeless) - late
+    later = tuple(_later_end(farm_plan, never, seed)) if len(never) < len(alone) else ()
+    others = tuple(_remedies(farm_plan, frozenset(hopeless), seed)) if len(hopeless) < len(alone) else ()
+    for pond in farm_plan.left_out:
+        if pond in late:
+            yield replace(hopeless[pond], remedies=(*later, *hopeless[pond].remedies))
+        elif pond in hopeless:
+            yield hopeless[pond]
+        else:
+            yield Unserved(pond, _no_time(farm_plan, pond), (*later, *others))
+
+
+def _no_time(farm_plan: FarmPlan, pond: int) -> str:
+    """Return why a pond is left out that a drone could sample if it did nothing else."""
+    fleet, windows = farm_plan.fleet, farm_plan.farm.ponds[pond].time_windows
+    if windows:
+        return f"no drone has time for it within the time windows ({_told_windows(windows)})"
+    if fleet.swap_s is None:
+        return "every drone flies once, and its trip is full without it"
+    if fleet.end is not None:
+        return f"the fleet has no time left for it before the end at {fleet.end}"
+    return "no drone has time for it beside those that have their time windows"
+
+
+def _told_windows(windows: tuple[tuple[str, str], ...]) -> str:
+    return ", ".join(f"{earliest}-{latest}" for earliest, latest in windows)
+
+
+def _out_of_reach(farm_plan: FarmPlan, pond: int, broken: _core.RoundViolation) -> Unserved:
+    """Return why a pond cannot be sampled even by a drone that does nothing else."""
     fleet, value, limit = farm_plan.fleet, broken.value or 0.0, broken.limit or 0.0
+    windows = farm_plan.farm.ponds[pond].time_windows
     leave_out = "leave it out, or move the depot nearer to it"
     match broken.kind:
         case "too_much_energy":
             reason = f"alone it takes {energy_text(value)}, a battery gives {energy_text(limit)} above the reserve"
             share = 1.0 - value / limit * (1.0 - fleet.reserve_percent / 100)
             remedies = [f"set reserve_percent to {math.floor(100 * share)} or less"] if share > 0.01 else []
-            remedies.append(f"fly a battery of {(fleet.battery_wh or 0.0) * value / limit:.0f} Wh or more")
+            remedies.append(f"fly a battery of {math.ceil((fleet.battery_wh or 0.0) * value / limit)} Wh or more")
             return Unserved(pond, reason, (*remedies, leave_out))
         case "too_slow":
             reason = f"alone it takes {duration_text(value)}, a trip may take {duration_text(limit)}"
             return Unserved(pond, reason, (f"raise max_trip_duration_s to {math.ceil(value)}", leave_out))
         case "late":
-            reason = f"even the first drone gets there {duration_text(value)} after its last time window ends"
+            reason = f"no drone can be there before the time windows ({_told_windows(windows)}) end"
             return Unserved(pond, reason, ("start earlier, or give it a later time window",))
+        case "after_the_end" if windows:
+            reason = (
+                f"the time windows ({_told_windows(windows)}) lie outside the round from {fleet.start} to {fleet.end}, "
+                "or so late that a drone is back from it after the end"
+            )
+            return Unserved(pond, reason, ("give it a window within the round, or move start or end",))
         case "after_the_end":
-            later = clock_after(fleet.end or "00:00", 300.0 * math.ceil(most_late_s / 300.0))[:5]
-            reason = f"a drone that does nothing else is back from it after the end at {fleet.end}"
-            return Unserved(pond, reason, (f"end at {later} at the earliest", leave_out))
+            return Unserved(pond, f"a drone that does nothing else is back from it after the end at {fleet.end}")
         case "too_long":
             return Unserved(pond, "it is beyond max_route_length_m even alone", (leave_out,))
         case _:
@@ -221,35 +245,16 @@ def _out_of_reach(farm_plan: FarmPlan, pond: int, broken: _core.RoundViolation, 
 
 
 def _remedies(farm_plan: FarmPlan, hopeless: frozenset[int], seed: int) -> Iterator[str]:
-    """Return what lets the fleet sample all ponds but the hopeless ones, each planned."""
-    farm, fleet, wind = farm_plan.farm, farm_plan.fleet, farm_plan.wind
+    """Return what besides a later end lets the fleet sample all ponds but the hopeless ones, each planned."""
+    fleet = farm_plan.fleet
 
-    def is_enough(wider: Fleet) -> FarmPlan | None:
-        try:
-            task, problem, are_stacked = _task(farm, wider, wind)
-        except InvalidInput:
-            return None
-        steps = LEAST_STEPS // 2 + STEPS_PER_POND_OF_REMEDIES * task.num_visits
-        trips, elapsed_s, _ = _searched(task, Effort(seed=seed), steps)
-        plan = _core.evaluate_round(task, trips)
-        left_out = {violation.visit for violation in plan.violations if violation.kind == "unserved"}
-        if left_out - hopeless or any(violation.kind != "unserved" for violation in plan.violations):
-            return None
-        solution = RoundSolution(task, problem, plan, "search", seed, elapsed_s)
-        return FarmPlan(farm, wider, solution, are_layers_stacked=are_stacked, wind=wind)
+    def is_enough(wider: Fleet) -> bool:
+        return _enough(farm_plan, wider, hopeless, seed) is not None
 
     if fleet.swap_s is None:
         swapping = _changed(fleet, swap_s=240.0)
         if swapping is not None and is_enough(swapping):
             yield "change batteries at the depot, as with swap_s = 240"
-    if fleet.end is not None and fleet.start is not None:
-        endless = is_enough(replace(fleet, end=None))
-        if endless is not None:
-            # To the next five minutes, so that whoever follows the advice has a little room.
-            end_s = 300.0 * math.ceil(endless.all_back_s / 300.0)
-            later = replace(fleet, end=clock_after(fleet.start, end_s)[:5])
-            if end_s < 86_400.0 and is_enough(later):
-                yield f"end at {later.end}"
     num_drones = _fewest_drones(fleet, is_enough)
     if num_drones is not None:
         yield f"fly with {counted(num_drones, 'drone')}"
@@ -257,6 +262,42 @@ def _remedies(farm_plan: FarmPlan, hopeless: frozenset[int], seed: int) -> Itera
         if fleet.battery_wh is not None and is_enough(replace(fleet, reserve_percent=float(reserve_percent))):
             yield f"set reserve_percent to {reserve_percent}"
             return
+
+
+def _later_end(farm_plan: FarmPlan, hopeless: frozenset[int], seed: int) -> Iterator[str]:
+    """Return the end by which the fleet samples all ponds but the hopeless ones, planned with it, if one is found."""
+    fleet = farm_plan.fleet
+    if fleet.end is None or fleet.start is None:
+        return
+    endless = _enough(farm_plan, replace(fleet, end=None), hopeless, seed)
+    if endless is None:
+        return
+    # In whole five minutes, and with some room if a search that begins with that end does not find it.
+    first_s = 300.0 * math.ceil(endless.all_back_s / 300.0)
+    for room_s in (0.0, 300.0, 900.0, 1800.0):
+        later = replace(fleet, end=clock_after(fleet.start, first_s + room_s)[:5])
+        if first_s + room_s < DAY_S and _enough(farm_plan, later, hopeless, seed):
+            yield f"end at {later.end}"
+            return
+
+
+def _enough(farm_plan: FarmPlan, wider: Fleet, hopeless: frozenset[int], seed: int) -> FarmPlan | None:
+    """Return a plan of another fleet that leaves out no pond but hopeless ones; `None` if a short search finds none."""
+    farm, wind = farm_plan.farm, farm_plan.wind
+    try:
+        task, problem, are_stacked = _task(farm, wider, wind)
+    except InvalidInput:
+        return None
+    steps = LEAST_STEPS // 2 + STEPS_PER_POND_OF_REMEDIES * task.num_visits
+    trips, elapsed_s, is_interrupted = _searched(task, Effort(seed=seed), steps)
+    if is_interrupted:
+        raise _Stopped
+    plan = _core.evaluate_round(task, trips)
+    left_out = {violation.visit for violation in plan.violations if violation.kind == "unserved"}
+    if left_out - hopeless or any(violation.kind != "unserved" for violation in plan.violations):
+        return None
+    solution = RoundSolution(task, problem, plan, "search", seed, elapsed_s)
+    return FarmPlan(farm, wider, solution, are_layers_stacked=are_stacked, wind=wind)
 
 
 def _changed(fleet: Fleet, **settings: float) -> Fleet | None:
@@ -298,12 +339,15 @@ class Size:
         Ponds that are left out.
     is_proven_too_few
         Whether no plan of so many drones can do all in time, whatever it is.
+    is_interrupted
+        Whether somebody stopped the search; the plan is the best until then.
     """
 
     num_drones: int
     all_back_s: float
     num_unserved: int
     is_proven_too_few: bool
+    is_interrupted: bool = False
 
     @property
     def is_enough(self) -> bool:
@@ -343,7 +387,7 @@ def sizes(
         trips, _, is_interrupted = _searched(task, effort, LEAST_STEPS + STEPS_PER_POND * task.num_visits)
         plan = _core.evaluate_round(task, trips)
         num_unserved = sum(violation.kind == "unserved" for violation in plan.violations)
-        size = Size(num_drones, plan.makespan_s, num_unserved, is_proven)
+        size = Size(num_drones, plan.makespan_s, num_unserved, is_proven, is_interrupted)
         yield size
         if is_interrupted or (size.is_enough and left == 0):
             return

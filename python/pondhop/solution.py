@@ -22,7 +22,7 @@ from pondhop.farm.words import pond_called
 from pondhop.fleet import CALM, Fleet, Wind
 from pondhop.fleet.clock import clock_after
 from pondhop.fleet.layers import Layers
-from pondhop.fleet.settings import AIRFRAME_SPEED_M_S
+from pondhop.fleet.settings import AIRFRAME_SPEED_M_S, LANDING_WIND_LIMIT_M_S
 from pondhop.palette import route_colour
 from pondhop.trips import Trip, trips_of_plan, trips_of_round
 from pondhop.units import Units, clock_text, counted, duration_text, energy_text, length_text, speed_text
@@ -155,7 +155,8 @@ class RoundSolution:
     @property
     def gap_s_percent(self) -> float | None:
         """How far the last landing is above its lower bound; `None` if ponds are left out, or the bound is 0."""
-        if any(violation.kind == "unserved" for violation in self.plan.violations):
+        is_whole = not any(violation.kind == "unserved" for violation in self.plan.violations)
+        if not is_whole or not math.isfinite(self.lower_bound_s):
             return None
         return gap_percent(self.plan.makespan_s, self.lower_bound_s)
 
@@ -391,8 +392,19 @@ class FarmPlan:
 
     @property
     def all_back_s(self) -> float:
-        """When the last drone is back, in seconds after the first take-off."""
+        """When the last drone is back, on the clock of the round: 0 is its start."""
         return max((trip.arrival_s for trip in self.trips), default=0.0)
+
+    @property
+    def span_s(self) -> float:
+        """From the first take-off, which may be later than the start where ponds have windows, to the last landing."""
+        return self.all_back_s - min((trip.departure_s for trip in self.trips), default=0.0)
+
+    def moment(self, time_s: float) -> str:
+        """Return a time of the round in a sentence: ``at 22:05:10``, or ``5 min 10 s after the start``."""
+        if self.fleet.start is None:
+            return f"{duration_text(time_s)} after the start"
+        return f"at {clock_after(self.fleet.start, time_s)}"
 
     def clock(self, time_s: float) -> str:
         """Return a time of the round as people read it: by the clock where the start is known, else since the start."""
@@ -436,6 +448,12 @@ class FarmPlan:
             notes.append(
                 f"The plan counts with {' and '.join(fast)}: the quadcopter of its laws flies at most "
                 f"{speed_text(AIRFRAME_SPEED_M_S, units)}, so see that yours does fly that fast."
+            )
+        if self.wind.speed_m_s > LANDING_WIND_LIMIT_M_S:
+            limit = speed_text(LANDING_WIND_LIMIT_M_S, units)
+            notes.append(
+                f"The wind is above {limit}: the quadcopter that was measured does not notice then that it has landed, "
+                "and its motors turn until somebody acts. Leave the drones on the ground unless yours do."
             )
         if self.solution.is_interrupted:
             notes.append("The planning was stopped: this is the best plan until then.")

@@ -9,8 +9,7 @@ from statistics import fmean
 from rich.console import Console
 from rich.table import Table
 
-from pondhop import _core
-from pondhop.encounters import APART_HEIGHT_M, APART_M, encounters_of, tracks_of
+from pondhop.encounters import encounters_text
 from pondhop.farm.features import listed
 from pondhop.files.routes_json import Judgement
 from pondhop.planners import LIMIT_KINDS
@@ -20,7 +19,6 @@ from pondhop.units import (
     counted,
     duration_text,
     energy_text,
-    gap_text,
     height_text,
     length_text,
     speed_text,
@@ -49,11 +47,16 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
         console.print(_energy_table(farm_plan))
         console.print(farm_plan.battery_text)
     _print_left_out(console, farm_plan)
-    _print_encounters(console, farm_plan, units)
-    console.print(f"All drones are back {duration_text(farm_plan.all_back_s)} after the first take-off.")
+    if farm_plan.num_drones_flying > 1:
+        console.print(encounters_text(farm_plan, units))
+    if farm_plan.trips:
+        console.print(f"All drones are back {duration_text(farm_plan.span_s)} after the first take-off.")
     bound = f"No plan is done with its longest route in less than {duration_text(solution.lower_bound_s)}"
     if farm_plan.is_round:
-        bound = f"No plan that visits all ponds is done in less than {duration_text(solution.lower_bound_s)}"
+        bound = "No plan visits all ponds: a bound proves it"
+        if math.isfinite(solution.lower_bound_s):
+            least_s = duration_text(solution.lower_bound_s)
+            bound = f"No plan that visits all ponds has its last landing less than {least_s} after the start"
     if solution.gap_s_percent is not None:
         bound += f": this one takes at most {_gap(solution.gap_s_percent)} longer than the best there is"
     console.print(f"{bound}.")
@@ -69,33 +72,6 @@ def print_farm_plan(farm_plan: FarmPlan, units: Units = "metric") -> None:
     _print_assumptions(console, farm_plan, units)
 
 
-def _print_encounters(console: Console, farm_plan: FarmPlan, units: Units) -> None:
-    """Print how near drones come to each other at the same moment, where several fly."""
-    if farm_plan.num_drones_flying < 2:
-        return
-    found, trips = encounters_of(farm_plan), farm_plan.trips
-    apart = f"{gap_text(APART_M, units)} over ground or {gap_text(APART_HEIGHT_M, units)} in height"
-    held_s = sum(trip.hold_s for trip in trips)
-    if not found:
-        held = f"; trips are held back {duration_text(held_s)} in all for it" if held_s else ""
-        nearest = _core.least_distance(tracks_of(farm_plan))
-        least = ""
-        if nearest is not None:
-            distance_m, one, other, time_s = nearest
-            pair = f"{trips[one].name} and {trips[other].name}"
-            least = f"; the least distance is {gap_text(distance_m, units)}, {pair} at {farm_plan.clock(time_s)}"
-        console.print(f"At every moment all drones are {apart} apart{least}{held}.")
-        return
-    worst = min(found, key=lambda encounter: encounter.distance_m)
-    first, second = (trips[index] for index in worst.trips)
-    console.print(
-        f"Drones come nearer than {apart} {counted(len(found), 'time')}: the nearest are {first.name} and "
-        f"{second.name} "
-        f"at {farm_plan.clock(worst.begin_s)}, {gap_text(worst.distance_m, units)} over ground. "
-        + ("No hold of a trip helps." if held_s else "--deconflict holds trips back until they do not.")
-    )
-
-
 def _print_left_out(console: Console, farm_plan: FarmPlan) -> None:
     """Print the ponds that a round leaves out, those of the same reason together, and what would help."""
     groups: dict[tuple[str, tuple[str, ...]], list[int]] = {}
@@ -106,6 +82,8 @@ def _print_left_out(console: Console, farm_plan: FarmPlan) -> None:
         console.print(f"Left out: {counted(len(ponds), 'pond')} ({names}): {reason}.", style="bold red")
         if remedies:
             console.print(f"What would help: {'; or '.join(remedies)}.")
+        else:
+            console.print("Nothing that was tried helps: a later end, more drones, a smaller reserve.")
 
 
 def print_violations(farm_plan: FarmPlan, units: Units = "metric") -> None:

@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from pondhop.cli.plan import ByOption, StartOption, WindOption, chosen_by, timed_fleet
-from pondhop.cli.shared import EXIT_INFEASIBLE, Json, Seed, parse_lonlat, progress, require_matplotlib
+from pondhop.cli.shared import (
+    EXIT_INFEASIBLE,
+    Json,
+    Seed,
+    exit_stopped,
+    parse_lonlat,
+    progress,
+    require_matplotlib,
+)
 from pondhop.units import counted, duration_text
 
 if TYPE_CHECKING:
@@ -69,6 +77,8 @@ def size(
         typer.echo(json.dumps({"num_drones": fewest, "sizes": sizes_json}))
     else:
         _print_sizes(found, chosen, len(read.ponds))
+    if found[-1].is_interrupted:
+        exit_stopped("stopped; larger numbers of drones were not tried")
     if fewest is None:
         raise typer.Exit(EXIT_INFEASIBLE)
 
@@ -99,6 +109,8 @@ def _print_sizes(found: list[Size], fleet: Fleet, num_ponds: int) -> None:
             style="bold" if planned is fewest else None,
         )
     console.print(table)
+    if fewest is None and found[-1].is_interrupted:
+        return
     if fewest is None:
         least = min(planned.num_unserved for planned in found)
         console.print(

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from pondhop.errors import Fault
 from pondhop.farm.degrees import number_given
 from pondhop.farm.features import Feature, Source, shortened
 from pondhop.fleet.clock import clock_faults
+
+_DASH = re.compile("[-\N{EN DASH}\N{EM DASH}]")
+"""Between two clock times, as spreadsheets and telephones write it."""
 
 MAX_SERVICE_S = 86_400.0
 MAX_PRIORITY = 1_000.0
@@ -64,7 +68,7 @@ def _priority(feature: Feature, source: Source) -> float:
 
 def _time_windows(feature: Feature, source: Source) -> tuple[tuple[str, str], ...]:
     """Windows as lists of pairs, as one pair, or as text: ``22:30-23:30, 04:00-05:30``."""
-    found = feature.find("time_windows")
+    found = feature.find("time_windows", "time_window")
     if found is None:
         return ()
     key, value = found
@@ -80,7 +84,12 @@ def _time_windows(feature: Feature, source: Source) -> tuple[tuple[str, str], ..
 
 
 def _pairs(value: object) -> list[tuple[str, str]] | None:
+    if isinstance(value, list) and not value:
+        return []
+    if isinstance(value, list) and all(isinstance(part, str) and _DASH.search(part) for part in value):
+        value = ",".join(value)
     if isinstance(value, str):
+        value = _DASH.sub("-", value)
         value = [[clock.strip() for clock in part.split("-")] for part in value.replace(";", ",").split(",")]
     if isinstance(value, list) and len(value) == 2 and all(isinstance(clock, str) for clock in value):
         value = [value]

@@ -216,7 +216,7 @@ def _derived_round(content: Mapping[str, Any]) -> FarmPlan:
         elapsed_s=0.0,
         is_interrupted=content["is_interrupted"],
         reason=content["reason"],
-        known_lower_bound_s=content["lower_bound_s"],
+        known_lower_bound_s=math.inf if content["lower_bound_s"] is None else content["lower_bound_s"],
         holds_s=tuple(map(tuple, holds_s)) if any(map(any, holds_s)) else (),
     )
     return FarmPlan(
@@ -246,7 +246,7 @@ def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
         "seed": solution.seed,
         "reason": solution.reason,
         "is_interrupted": solution.is_interrupted,
-        "lower_bound_s": solution.lower_bound_s,
+        "lower_bound_s": solution.lower_bound_s if math.isfinite(solution.lower_bound_s) else None,
         "gap_percent": solution.gap_s_percent,
         "separation": solution.separation and _separation_object(solution.separation),
         "summary": {

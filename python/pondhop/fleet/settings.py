@@ -91,6 +91,9 @@ Looked up in the @Range comments of ArduPilot's source, of which ground stations
 AIRFRAME_SPEED_M_S = 10.0
 """The measured quadcopter flies no faster, however it is set: it leans 30 degrees then."""
 
+LANDING_WIND_LIMIT_M_S = 5.0
+"""Above this wind the landings of a simulated 3 kg quadcopter never ended."""
+
 WHOLE = ("num_drones", "num_pads", "samples_per_trip")
 """Settings that are whole numbers."""
 

@@ -76,6 +76,6 @@ def parse_wind(text: str) -> Wind:
     try:
         speed_m_s, from_deg = map(float, match.groups() if match else ())
     except ValueError:
-        action = "give metres per second and where it blows from in degrees, as 8@225"
+        action = "give metres per second and where it blows from in degrees, as 4@225"
         raise InvalidInput([Fault("wind", f"{shortened(text)!r} is no wind", action)]) from None
     return Wind(speed_m_s, from_deg)

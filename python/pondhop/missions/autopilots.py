@@ -38,9 +38,6 @@ MAX_DISARM_DELAY_S = 127
 """The longest that ArduPilot waits on the ground before it disarms; 0 is for ever (DISARM_DELAY in
 ArduCopter/Parameters.cpp, @Range 0 to 127)."""
 
-LANDING_WIND_LIMIT_M_S = 5.0
-"""Above this wind the landings of a simulated 3 kg quadcopter never ended."""
-
 
 @dataclass(frozen=True)
 class Parameter:

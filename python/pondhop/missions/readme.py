@@ -7,7 +7,9 @@ import re
 from collections import defaultdict
 from textwrap import fill
 
-from pondhop.missions.autopilots import LANDING_WIND_LIMIT_M_S, Autopilot, Generation, Parameter
+from pondhop.encounters import encounters_text
+from pondhop.fleet.settings import LANDING_WIND_LIMIT_M_S
+from pondhop.missions.autopilots import Autopilot, Generation, Parameter
 from pondhop.missions.formats import FORMATS
 from pondhop.solution import FarmPlan
 from pondhop.trips import Trip
@@ -62,8 +64,8 @@ def _drones(farm_plan: FarmPlan, units: Units) -> list[str]:
     for trip in farm_plan.trips:
         start, back, phases = farm_plan.clock(trip.departure_s), farm_plan.clock(trip.arrival_s), trip.phases
         length, energy = length_text(trip.length_m, units), energy_text(phases.total_j)
-        way_out = height_text(layers.way_out_height_m(trip.drone), units)
-        way_home = height_text(layers.way_home_height_m(trip.drone), units)
+        way_out = height_text(round(layers.way_out_height_m(trip.drone), 1), units)
+        way_home = height_text(round(layers.way_home_height_m(trip.drone), 1), units)
         rows += [
             f"{trip.name}: {counted(len(trip.ponds), 'pond')}, {length}, {duration_text(trip.duration_s)}, {energy}",
             f"  takes off at {start}, flies out {way_out} high, comes home {way_home} high, is back at {back}",
@@ -73,7 +75,7 @@ def _drones(farm_plan: FarmPlan, units: Units) -> list[str]:
     air = "in calm air"
     if farm_plan.wind.speed_m_s:
         air = f"in {farm_plan.wind.told(units)}"
-    return [*rows, f"All are back {duration_text(farm_plan.all_back_s)} after the first take-off, {air}."]
+    return [*rows, f"All are back {duration_text(farm_plan.span_s)} after the first take-off, {air}."]
 
 
 def _swaps(farm_plan: FarmPlan) -> list[str]:
@@ -143,11 +145,24 @@ def _start(farm_plan: FarmPlan, units: Units) -> list[str]:
     return [
         f"Load {files}: the same mission, but only .plan holds the fence and the no-fly zones.",
         f"Stand the drones at least {height_text(STANDS_APART_M, units)} apart: each comes home to where it was armed.",
-        f"Start drone 1, then each drone {farm_plan.fleet.takeoff_interval_s:g} s after the one before it, in the "
-        "order of their numbers.",
+        *_order(farm_plan),
         "QGroundControl: slide Start Mission. Mission Planner: Actions, Mission Start. From a transmitter: arm, switch "
         "to AUTO and raise the throttle to the middle, or set AUTO_OPTIONS 3: a drone in AUTO with its throttle down "
         "disarms after 10 s.",
+    ]
+
+
+def _order(farm_plan: FarmPlan) -> list[str]:
+    """When each trip is started: where all fly once and none waits, a rule; else a list by time."""
+    if not farm_plan.is_round:
+        return [
+            f"Start drone 1, then each drone {farm_plan.fleet.takeoff_interval_s:g} s after the one before it, in the "
+            "order of their numbers."
+        ]
+    trips = sorted(farm_plan.trips, key=lambda trip: (trip.departure_s, trip.drone))
+    return [
+        "Start each trip at its time, not before: drones that start early meet others, or wait in the air.",
+        *(f"{farm_plan.clock(trip.departure_s)}  {trip.name}" for trip in trips),
     ]
 
 
@@ -174,9 +189,19 @@ def _knowledge(farm_plan: FarmPlan, units: Units) -> list[str]:
         *_own_times(farm_plan),
         "Heights are above the depot; the ground is taken to be flat.",
         *_layers(farm_plan, units),
+        *([encounters_text(farm_plan, units)] if farm_plan.is_round and farm_plan.num_drones_flying > 1 else []),
+        *_left_out(farm_plan),
         f"The way home (RTL) is flown at {return_speed}, at the height of each drone above.",
         *farm_plan.notes_told_in(units),
     ]
+
+
+def _left_out(farm_plan: FarmPlan) -> list[str]:
+    """Ponds that nobody samples."""
+    if not farm_plan.left_out:
+        return []
+    names = ", ".join(farm_plan.farm.ponds[pond].id for pond in farm_plan.left_out)
+    return [f"NOT SAMPLED in this round: {counted(len(farm_plan.left_out), 'pond')}: {names}."]
 
 
 def _own_times(farm_plan: FarmPlan) -> list[str]:

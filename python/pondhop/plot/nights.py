@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pondhop.arguments import Arguments
+from pondhop.fleet.clock import seconds_of_day
 from pondhop.palette import route_colour
 from pondhop.plot.canvas import write_title
 from pondhop.plot.look import LOOKS, Look, Theme
@@ -17,6 +19,9 @@ from pondhop.units import JOULES_PER_WATT_HOUR, counted, duration_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_TICKS, _MOST_TICKS = (1, 2, 5, 10, 15, 20, 30, 60, 120, 180, 360, 720), 12
+"""Minutes between two marks of the clock, and how many marks there are at most."""
 
 _ROW = 0.82
 """Height of a drone's row, as a share of the distance between two rows: a full battery."""
@@ -40,7 +45,7 @@ def plot_night(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "l
     Returns
     -------
     Axes
-        Minutes after the first take-off to the right.
+        Minutes after the start of the round to the right.
 
     Raises
     ------
@@ -58,14 +63,16 @@ def plot_night(farm_plan: FarmPlan, ax: Axes | None = None, *, theme: Theme = "l
         own = [trip for trip in farm_plan.trips if trip.drone == drone]
         _draw_drone(ax, farm_plan, own, -float(row), look)
     ax.set_ylim(-len(drones) + 0.9, 1.0)
-    ax.set_xlim(0.0, max(1.0, farm_plan.all_back_s / 60.0) * 1.01)
+    first = min((trip.departure_s for trip in farm_plan.trips), default=0.0) / 60
+    last = farm_plan.all_back_s / 60
+    ax.set_xlim(first, max(first + 1.0, last + 0.01 * (last - first)))
     ax.set_yticks([_ROW / 2 - row for row in range(len(drones))], [f"drone {drone + 1}" for drone in drones])
     _label_clock(ax, farm_plan, look)
     _write_key(ax, farm_plan, look)
     facts = [
         counted(len(farm_plan.trips), farm_plan.trip_word),
         counted(len(drones), "drone"),
-        f"all back after {duration_text(farm_plan.all_back_s)}",
+        f"all back after {duration_text(farm_plan.span_s)}",
         farm_plan.wind.told(),
     ]
     write_title(ax, farm_plan.farm.name, [facts], look)
@@ -103,9 +110,10 @@ def _draw_drone(ax: Axes, farm_plan: FarmPlan, trips: Sequence[Trip], base: floa
         for arrival_s, start_s, _ in trip.times_s:
             if start_s - arrival_s > 1.0:
                 ax.plot([arrival_s / 60, start_s / 60], [base, base], color=look.ink, linewidth=3.0, zorder=5)
-        if trip.ready_s > trip.arrival_s:
+        if trip.ready_s > trip.arrival_s and fleet.swap_s is not None:
+            # Before the swap a drone may wait for its place.
             ax.fill_between(
-                [trip.arrival_s / 60, trip.ready_s / 60],
+                [(trip.ready_s - fleet.swap_s) / 60, trip.ready_s / 60],
                 base,
                 base + 0.3 * _ROW,
                 facecolor="none",
@@ -114,9 +122,9 @@ def _draw_drone(ax: Axes, farm_plan: FarmPlan, trips: Sequence[Trip], base: floa
                 linewidth=0.6,
                 zorder=1,
             )
-    if full_j is not None:
+    for trip in trips if full_j is not None else ():
         level = base + _ROW * fleet.reserve_percent / 100
-        ends = [trips[0].departure_s / 60, trips[-1].arrival_s / 60]
+        ends = [trip.departure_s / 60, trip.arrival_s / 60]
         ax.plot(ends, [level, level], color=look.no_fly, linewidth=0.9, linestyle="--", zorder=4)
 
 
@@ -131,13 +139,18 @@ def _battery(trip: Trip, full_j: float | None) -> tuple[np.ndarray, np.ndarray]:
 
 def _label_clock(ax: Axes, farm_plan: FarmPlan, look: Look) -> None:
     """Write clock times where the start is known, else the time after it."""
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
+    from matplotlib.ticker import FixedLocator, FuncFormatter
 
     def told(minutes: float, _position: int) -> str:
         clock = farm_plan.clock(60 * minutes)
         return clock[:5] if farm_plan.fleet.start is not None else clock
 
-    ax.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 3, 5, 6, 10]))
+    start = farm_plan.fleet.start
+    past_midnight = 0.0 if start is None else seconds_of_day(start) / 60
+    first, last = past_midnight + ax.get_xlim()[0], past_midnight + ax.get_xlim()[1]
+    step = next((step for step in _TICKS if (last - first) / step <= _MOST_TICKS), _TICKS[-1])
+    ticks = np.arange(math.ceil(first / step), math.floor(last / step) + 1) * step - past_midnight
+    ax.xaxis.set_major_locator(FixedLocator(list(ticks)))
     ax.xaxis.set_major_formatter(FuncFormatter(told))
     ax.grid(axis="x", color=look.faint_ink, alpha=0.25, linewidth=0.6)
     ax.set_axisbelow(True)

@@ -104,7 +104,7 @@ def drawn_plan(
     labels = {trip.drone: _drone_label(farm_plan, trip.drone, units) for trip in farm_plan.trips}
     draw_routes(ax, solution.problem, routes, labels, look, farm_plan.left_out)
     draw_wind(ax, farm_plan.wind, look, units)
-    draw_shading_key(ax, look)
+    draw_shading_key(ax, look, "trip" if are_numbered else "drone")
     draw_scale_bar(ax, look, units)
     numbered = numbered_ponds(solution.problem, routes)
     unwritten = draw_names(ax, solution.problem.ponds, [pond.id for pond in farm.ponds], look, numbered=numbered)
@@ -134,7 +134,7 @@ def _facts(farm_plan: FarmPlan, units: Units) -> list[list[str]]:
         [
             counted(len(farm_plan.farm.ponds), "pond"),
             counted(farm_plan.num_drones_flying, "drone"),
-            f"all back after {duration_text(farm_plan.all_back_s)}",
+            f"all back after {duration_text(farm_plan.span_s)}",
             f"longest {farm_plan.trip_word} {length_text(max(lengths_m, default=0.0), units)}",
             f"total {length_text(sum(lengths_m), units)}",
         ]
@@ -143,8 +143,11 @@ def _facts(farm_plan: FarmPlan, units: Units) -> list[list[str]]:
         crossings = counted(solution.separation.num_crossings, "crossing")
         on_ways = solution.separation.num_depot_leg_crossings
         lines.append([f"{crossings} of routes between ponds, {on_ways} more on the ways out and home"])
-    if not farm_plan.is_feasible:
-        lines.append([f"NOT TO BE FLOWN: {counted(len(farm_plan.violations), 'rule')} broken"])
+    broken = [violation for violation in farm_plan.violations if violation.kind != "unserved"]
+    if broken:
+        lines.append([f"NOT TO BE FLOWN: {counted(len(broken), 'rule')} broken"])
+    if farm_plan.left_out:
+        lines.append([f"{counted(len(farm_plan.left_out), 'pond')} not sampled"])
     return lines
 
 

@@ -94,9 +94,9 @@ def numbered_ponds(problem: Problem, routes: Sequence[DrawnRoute]) -> list[int]:
     return [max(route.ponds, key=lambda pond: float(distances[pond])) for route in routes]
 
 
-def draw_shading_key(ax: Axes, look: Look) -> None:
+def draw_shading_key(ax: Axes, look: Look, whose: str) -> None:
     """Say in the legend what the shaded areas are."""
-    label = "shaded: around the ponds of one drone"
+    label = f"shaded: around the ponds of one {whose}"
     ax.fill([], [], facecolor=(look.faint_ink, 0.15), edgecolor=(look.faint_ink, 0.5), label=label)
 
 

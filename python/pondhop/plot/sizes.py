@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+_MOST_MINUTES_S = 7200.0
+"""Longer rounds are told in hours."""
+
+
 def plot_sizes(
     sizes: Sequence[Size], fleet: Fleet, name: str, ax: Axes | None = None, *, theme: Theme = "light"
 ) -> Axes:
@@ -37,7 +41,7 @@ def plot_sizes(
     Returns
     -------
     Axes
-        Drones to the right, hours up.
+        Drones to the right, minutes or hours up.
     """
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
@@ -48,11 +52,13 @@ def plot_sizes(
     ax.figure.set_facecolor(look.background)
     ax.set_facecolor(look.background)
     colour = route_colour(0)
+    most_s = max((size.all_back_s for size in sizes), default=0.0)
+    unit_s, unit = (3600.0, "hours") if most_s > _MOST_MINUTES_S else (60.0, "minutes")
     enough = [size for size in sizes if size.is_enough]
     short = [size for size in sizes if not size.is_enough]
     ax.plot(
         [size.num_drones for size in enough],
-        [size.all_back_s / 3600 for size in enough],
+        [size.all_back_s / unit_s for size in enough],
         "o-",
         color=colour,
         label="all ponds sampled",
@@ -60,7 +66,7 @@ def plot_sizes(
     if short:
         ax.plot(
             [size.num_drones for size in short],
-            [size.all_back_s / 3600 for size in short],
+            [size.all_back_s / unit_s for size in short],
             "o",
             markerfacecolor="none",
             color=look.no_fly,
@@ -70,7 +76,7 @@ def plot_sizes(
         told = f"{size.num_unserved} left out" + (", proven" if size.is_proven_too_few else "")
         ax.annotate(
             told,
-            (size.num_drones, size.all_back_s / 3600),
+            (size.num_drones, size.all_back_s / unit_s),
             xytext=(0, -14),
             textcoords="offset points",
             ha="center",
@@ -78,11 +84,12 @@ def plot_sizes(
             color=look.faint_ink,
         )
     if math.isfinite(fleet.span_s):
-        ax.axhline(fleet.span_s / 3600, color=look.no_fly, linestyle="--", linewidth=1.0, label=f"end {fleet.end}")
+        ax.axhline(fleet.span_s / unit_s, color=look.no_fly, linestyle="--", linewidth=1.0, label=f"end {fleet.end}")
+    ax.margins(x=0.12, y=0.15)
     ax.set_ylim(0.0, None)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("drones", color=look.ink)
-    ax.set_ylabel("hours until the last is back", color=look.ink)
+    ax.set_ylabel(f"{unit} until the last is back", color=look.ink)
     ax.tick_params(colors=look.ink)
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(look.faint_ink)

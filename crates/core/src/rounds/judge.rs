@@ -24,8 +24,8 @@ pub fn evaluate_round(round: &Round, routes: &[Vec<Vec<usize>>]) -> Result<Round
     evaluate_held_round(round, routes, &[])
 }
 
-/// The same, where trips are held back: trip j of route i, empty ones not counted, takes off `holds[i][j]` seconds after it might, or
-/// later; not at all held back where nothing is said.
+/// The same, where trips are held back: trip j of route i, empty ones not counted, takes off `holds[i][j]` seconds later than it
+/// otherwise would; not at all held back where nothing is said.
 ///
 /// # Errors
 /// As [`evaluate_round`]; if a hold is negative or no number.
@@ -91,7 +91,12 @@ fn fly_all(
     let mut left: Vec<Vec<Vec<usize>>> = routes.iter().map(waiting).collect();
     let fly_next = |route: usize, number: usize, left: &mut Vec<Vec<Vec<usize>>>, ready: f64| {
         let hold = holds.get(route).and_then(|holds| holds.get(number)).copied().unwrap_or(0.0);
-        left[route].pop().map(|visits| fly_trip(round, &fleet.drone(route), &visits, ready + hold))
+        left[route].pop().map(|visits| {
+            let drone = fleet.drone(route);
+            let flown = fly_trip(round, &drone, &visits, ready);
+            // What is held back takes off later than it otherwise would, also where it waits for a window.
+            if hold > 0.0 { fly_trip(round, &drone, &visits, flown.0.departure + hold) } else { flown }
+        })
     };
     let mut in_the_air: Vec<Option<(Trip, Vec<RoundViolation>)>> =
         (0..routes.len()).map(|route| fly_next(route, 0, &mut left, fleet.first_takeoff(route))).collect();
