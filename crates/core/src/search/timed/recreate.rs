@@ -146,6 +146,7 @@ struct Cheapest<'a> {
 
 impl Cheapest<'_> {
     fn look(&mut self, random: &mut Random) {
+        let is_timed = self.network.is_timed(self.visit);
         for &Neighbour { visit: neighbour, leg_to, leg_from } in self.network.neighbours(self.visit) {
             let Place { trip, index, .. } = self.state.places[neighbour as usize];
             if trip == ABSENT {
@@ -155,7 +156,7 @@ impl Cheapest<'_> {
             let (leg_before, leg_after) = (legs[index as usize], legs[index as usize + 1]);
             // A place whose other end is nearer was tried from there, so the other leg is about as long; in time nearer ends may
             // be no neighbours.
-            let is_pruned = !self.network.has_windows
+            let is_pruned = !is_timed
                 && 2.0 * leg_to.min(leg_from) - if leg_before > leg_after { leg_before } else { leg_after }
                     >= self.price;
             if !is_pruned {
@@ -166,7 +167,7 @@ impl Cheapest<'_> {
         let num_slots = self.state.trips.len();
         if num_slots > 0 {
             let begin = random.below(num_slots);
-            for offset in 0..num_slots.min(if self.network.has_windows { MAX_TIMED_ENDS } else { MAX_ENDS }) {
+            for offset in 0..num_slots.min(if is_timed { MAX_TIMED_ENDS } else { MAX_ENDS }) {
                 let trip = (begin + offset) % num_slots;
                 let size = self.state.trips[trip].visits.len() as u32;
                 if size > 0 {
