@@ -12,6 +12,11 @@ const MEAN_REMOVED: f64 = 10.0;
 const MAX_STRING: f64 = 10.0;
 /// Share of strings from whose middle some visits are kept.
 const SPLIT_SHARE: f64 = 0.5;
+/// Share of ruins that take out a whole trip, where there are many, and from how many trips the smallest is taken.
+const WHOLE_SHARE: f64 = 0.02;
+const NUM_DRAWN: usize = 4;
+/// Fewer trips are rarely one too many, and steps are better spent otherwise.
+const MANY_TRIPS: usize = 16;
 /// Chance of keeping one more visit in the middle of a split string, turned round (beta of the source).
 const SPLIT_STOP: f64 = 0.99;
 
@@ -33,6 +38,11 @@ impl Ruin {
         touched: &mut Touched,
     ) -> Result<(), OverLimit> {
         self.ruined.clear();
+        let has_many = network.round.fleet().turnaround.is_some() && state.num_trips() >= MANY_TRIPS;
+        if has_many && random.uniform() < WHOLE_SHARE {
+            self.remove_trip(network, state, random, touched);
+            return state.renew_all(network, &self.ruined);
+        }
         let num_trips = state.num_trips();
         let mean_size = network.num_visits as f64 / num_trips.max(1) as f64;
         let max_string = mean_size.clamp(1.0, MAX_STRING);
@@ -49,6 +59,19 @@ impl Ruin {
             }
         }
         state.renew_all(network, &self.ruined)
+    }
+
+    /// Takes out the smallest of a few random trips, as a whole: what counts most is how many trips there are.
+    fn remove_trip(&mut self, network: &Network<'_>, state: &mut State, random: &mut Random, touched: &mut Touched) {
+        let drawn = (0..NUM_DRAWN).map(|_| random.below(state.trips.len().max(1)));
+        let size = |trip: &usize| state.trips.get(*trip).map_or(0, |trip| trip.visits.len());
+        let Some(trip) = drawn.filter(|trip| size(trip) > 0).min_by_key(size) else { return };
+        self.cut.clear();
+        self.cut.extend_from_slice(&state.trips[trip].visits);
+        self.ruined.push(trip as u32);
+        for &visit in &self.cut {
+            state.take_out(network, visit, touched);
+        }
     }
 
     fn remove_string(
