@@ -157,9 +157,7 @@ fn trip_violations(round: &Round, route: usize, index: usize, trip: &Trip) -> Ve
     }
     if is_over(energy, usable_energy) {
         violations.push(RoundViolation::TooMuchEnergy { route, trip: index, energy, usable_energy });
-    } else if let Some(stop) =
-        trip.stops.iter().find(|stop| is_over(stop.energy_used + stop.energy_home, usable_energy))
-    {
+    } else if let Some(stop) = stranded(trip, &drone) {
         let by = stop.energy_used + stop.energy_home - usable_energy;
         violations.push(RoundViolation::NoWayHome { route, trip: index, visit: stop.visit, by });
     }
@@ -170,13 +168,20 @@ fn is_over(value: f64, limit: f64) -> bool {
     value > limit + TOLERANCE * limit.abs().max(1.0)
 }
 
+/// The first stop from which the battery is not enough for the way home.
+fn stranded<'a>(trip: &'a Trip, drone: &VehicleType) -> Option<&'a RoundStop> {
+    trip.stops.iter().find(|stop| is_over(stop.energy_used + stop.energy_home, drone.energy.usable_energy))
+}
+
 /// The trip that lands first, and what comes too late in it; if that takes longer or more energy than a trip may, the first that
 /// does not, because a take-off that waits for later windows may spend less time in the air.
 fn fly_trip(round: &Round, drone: &VehicleType, visits: &[usize], ready: f64) -> (Trip, Vec<RoundViolation>) {
     let take_off = visits.iter().map(|&visit| round.visits()[visit].release).fold(ready, f64::max);
     let (trip, late) = fly_from(round, drone, visits, take_off);
     let is_short = |trip: &Trip| {
-        !is_over(trip.arrival - trip.departure, drone.max_duration) && !is_over(trip.energy, drone.energy.usable_energy)
+        !is_over(trip.arrival - trip.departure, drone.max_duration)
+            && !is_over(trip.energy, drone.energy.usable_energy)
+            && stranded(trip, drone).is_none()
     };
     if late.is_empty() && !is_short(&trip) {
         let departures = later_departures(round, drone, visits, take_off);
