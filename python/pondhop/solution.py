@@ -354,13 +354,18 @@ class FarmPlan:
         if isinstance(solution, RoundSolution):
             are_numbered = self.fleet.swap_s is not None
             return trips_of_round(solution.problem, solution.plan, solution.holds_s, are_numbered=are_numbered)
-        return trips_of_plan(solution.problem, solution.plan, self.fleet.takeoff_interval_s)
+        return trips_of_plan(solution.problem, solution.plan, solution.alone, self.fleet.takeoff_interval_s)
 
     @property
     def left_out(self) -> tuple[int, ...]:
         """Indices of the ponds that no trip visits."""
         visited = {pond for trip in self.trips for pond in trip.ponds}
         return tuple(pond for pond in range(len(self.farm.ponds)) if pond not in visited)
+
+    @cached_property
+    def reasons(self) -> dict[int, Unserved]:
+        """Why ponds are left out, by their indices; not all that are left out need be there."""
+        return {unserved.pond: unserved for unserved in self.unserved}
 
     @property
     def num_drones_flying(self) -> int:
@@ -489,7 +494,7 @@ class FarmPlan:
         value, limit = violation.value or 0.0, violation.limit or 0.0
         match violation.kind:
             case "unserved":
-                told = {unserved.pond: unserved for unserved in self.unserved}.get(violation.visit or 0)
+                told = self.reasons.get(violation.visit or 0)
                 message = f"{pond} is not visited" + (f": {told.reason}" if told and told.reason else "")
                 remedy = "; or ".join(told.remedies) if told and told.remedies else "plan again"
             case "repeated":

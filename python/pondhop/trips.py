@@ -92,11 +92,19 @@ class Trip:
         return float((self.times_s[:, 1] - self.times_s[:, 0]).sum())
 
 
-def trips_of_plan(problem: Problem, plan: Plan, takeoff_interval_s: float) -> tuple[Trip, ...]:
-    """Return the routes of a plan as trips, one a drone, that take off one after the other."""
+def trips_of_plan(problem: Problem, plan: Plan, alone: Plan, takeoff_interval_s: float) -> tuple[Trip, ...]:
+    """Return the routes of a plan as trips, one a drone, that take off one after the other.
+
+    Parameters
+    ----------
+    problem, plan
+        The task and its judged routes.
+    alone
+        The plan in which every pond is the only one of its route, flown lowest.
+    takeoff_interval_s
+        Between two take-offs.
+    """
     # What the way home from each pond takes in the lowest layer, landing included.
-    num_ponds = problem.num_ponds
-    alone = _core.evaluate(problem.replace(num_drones=num_ponds, layers=None), [[pond] for pond in range(num_ponds)])
     energies_home_j = [float(energies_j[-1]) for energies_j in alone.leg_energies_j]
     more_j = [float(way_home_j) - problem.energy.way_home_fixed_j for *_, way_home_j in problem.layers] or [0.0]
     found = []

@@ -1,29 +1,13 @@
 //! What the search says of rounds against their judge, and against brute force.
 
-use pondhop_core::geometry::Point;
-use pondhop_core::problem::{Energy, Layer, VehicleType, Visit, WayHome};
+mod random_rounds;
+
 use pondhop_core::random::Random;
 use pondhop_core::rounds::{
-    Fleet, Round, RoundPlan, RoundViolation, RoundVisit, Rounding, TimeWindow, evaluate_round, makespan_bound,
+    Fleet, Round, RoundPlan, RoundViolation, Rounding, TimeWindow, evaluate_round, makespan_bound,
 };
 use pondhop_core::search::{Goal, Options, solve_round};
-use pondhop_core::travel::Air;
-
-fn visit(x: f64, y: f64, service: f64, windows: &[(f64, f64)]) -> RoundVisit {
-    RoundVisit {
-        windows: windows.iter().map(|&(earliest, latest)| TimeWindow { earliest, latest }).collect(),
-        load: 1.0,
-        ..RoundVisit::at_any_time(Visit { position: Point::new(x, y), service_duration: service, service_energy: 0.0 })
-    }
-}
-
-fn fleet(num_drones: usize, turnaround: Option<f64>) -> Fleet {
-    Fleet { turnaround, ..Fleet::of(VehicleType::unlimited(num_drones)) }
-}
-
-fn round(visits: Vec<RoundVisit>, fleet: Fleet) -> Round {
-    Round::new(Point::new(0.0, 0.0), visits, fleet, Rounding::Exact).unwrap()
-}
+use random_rounds::{fleet, random_round, round, visit};
 
 #[test]
 fn a_drone_waits_on_the_ground() {
@@ -77,79 +61,6 @@ fn every_broken_rule_is_told_with_its_amount() {
     assert_eq!(evaluate_round(&task, &[vec![vec![3]]]).unwrap_err().faults[0].path, "routes[0][0][0]");
 }
 
-/// A random round in which every feature is on.
-fn random_round(random: &mut Random, num_visits: usize) -> Round {
-    let number = |random: &mut Random, most: usize| random.below(most) as f64;
-    let most_windows = 1 + random.below(2);
-    let visits = (0..num_visits)
-        .map(|_| {
-            let mut windows: Vec<(f64, f64)> = (0..random.below(most_windows + 1))
-                .map(|_| {
-                    let earliest = number(random, 300);
-                    (earliest, earliest + number(random, 80))
-                })
-                .collect();
-            windows.sort_by(|one, other| one.0.total_cmp(&other.0));
-            let mut visit = RoundVisit {
-                release: if random.below(3) == 0 { number(random, 100) } else { 0.0 },
-                load: number(random, 4),
-                priority: 1.0 + number(random, 3),
-                ..visit(number(random, 60), number(random, 60), number(random, 10), &windows)
-            };
-            visit.visit.service_energy = number(random, 60);
-            visit
-        })
-        .collect();
-    let rounding = if random.below(3) > 0 { Rounding::Exact } else { Rounding::Dimacs };
-    Round::new(Point::new(30.0, 30.0), visits, random_fleet(random), rounding).unwrap()
-}
-
-fn random_fleet(random: &mut Random) -> Fleet {
-    let number = |random: &mut Random, most: usize| random.below(most) as f64;
-    let unlimited_or = |random: &mut Random, least: f64, more: usize| {
-        if random.below(2) == 0 { f64::INFINITY } else { least + number(random, more) }
-    };
-    let way_home =
-        (random.below(2) == 0).then(|| WayHome { speed: 1.0 + number(random, 3), fixed_duration: number(random, 9) });
-    let energy = Energy {
-        takeoff_energy: number(random, 30),
-        leg_power: 3.0,
-        leg_stop_power: 2.0,
-        way_home_power: 4.0,
-        way_home_fixed_energy: number(random, 30),
-        usable_energy: unlimited_or(random, 400.0, 600),
-    };
-    let vehicle_type = VehicleType {
-        speed: 1.0 + number(random, 3),
-        leg_stop_duration: number(random, 3),
-        takeoff_duration: number(random, 5),
-        way_home,
-        energy,
-        max_length: unlimited_or(random, 100.0, 200),
-        max_duration: unlimited_or(random, 100.0, 200),
-        ..VehicleType::unlimited(1 + random.below(3))
-    };
-    let layers = (0..if way_home.is_some() { random.below(3) } else { 0 })
-        .map(|_| Layer {
-            takeoff_duration: number(random, 9),
-            way_home_duration: number(random, 9),
-            takeoff_energy: number(random, 30),
-            way_home_energy: number(random, 30),
-        })
-        .collect();
-    let wind = Point::new(number(random, 5) - 2.0, number(random, 5) - 2.0);
-    Fleet {
-        layers,
-        air: Air { wind, max_airspeed: 3.0 + number(random, 3), drag_power: 0.1 },
-        capacity: 4.0 + number(random, 8),
-        shift: TimeWindow { earliest: number(random, 20), latest: 300.0 + number(random, 300) },
-        takeoff_interval: number(random, 5),
-        turnaround: (random.below(3) > 0).then(|| number(random, 30)),
-        num_pads: 1 + random.below(3),
-        ..Fleet::of(vehicle_type)
-    }
-}
-
 fn solved(task: &Round, goal: Goal, steps: u64, seed: u64) -> Vec<Vec<Vec<usize>>> {
     solve_round(task, &Options { seed, goal, max_iterations: Some(steps), ..Options::default() }).routes
 }
@@ -165,7 +76,7 @@ fn what_the_search_calls_feasible_is_feasible() {
     let (mut num_made, mut num_exact) = (0, 0);
     for seed in 0..6000 {
         let num_visits = 1 + random.below(30);
-        let task = random_round(&mut random, num_visits);
+        let task = random_round(&mut random, num_visits, false);
         let goal = if seed % 2 == 0 { Goal::Max } else { Goal::Total };
         let outcome = solve_round(&task, &Options { seed, goal, max_iterations: Some(40), ..Options::default() });
         let routes = outcome.routes;
@@ -191,7 +102,7 @@ fn what_the_search_calls_feasible_is_feasible() {
 #[test]
 fn the_same_seed_gives_the_same_routes() {
     for goal in [Goal::Max, Goal::Total] {
-        let task = random_round(&mut Random::new(3), 25);
+        let task = random_round(&mut Random::new(3), 25, false);
         assert_eq!(solved(&task, goal, 500, 4), solved(&task, goal, 500, 4));
         let options = Options { seed: 4, goal, max_iterations: Some(500), num_threads: 3, ..Options::default() };
         let threads = [(); 2].map(|()| solve_round(&task, &options).routes);
@@ -281,7 +192,7 @@ fn the_search_finds_what_brute_force_finds() {
     let mut random = Random::new(11);
     for seed in 0..200 {
         let num_visits = 1 + random.below(5);
-        let drawn = random_round(&mut random, num_visits);
+        let drawn = random_round(&mut random, num_visits, false);
         let mut fleet = drawn.fleet().clone();
         fleet.vehicle_type.num_available = fleet.vehicle_type.num_available.min(2);
         let task = Round::new(drawn.depot(), drawn.visits().to_vec(), fleet, Rounding::Exact).unwrap();

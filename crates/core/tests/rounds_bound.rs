@@ -1,102 +1,14 @@
 //! `makespan_bound` and `fewest_trips` by hand, and against the plans that the search finds.
 
+mod random_rounds;
+
 use pondhop_core::geometry::Point;
-use pondhop_core::problem::{Energy, Layer, VehicleType, Visit, WayHome};
+use pondhop_core::problem::{Energy, VehicleType, WayHome};
 use pondhop_core::random::Random;
-use pondhop_core::rounds::{
-    Fleet, Round, RoundVisit, Rounding, TimeWindow, evaluate_round, fewest_trips, makespan_bound,
-};
+use pondhop_core::rounds::{Fleet, Round, RoundVisit, Rounding, evaluate_round, fewest_trips, makespan_bound};
 use pondhop_core::search::{Options, solve_round};
 use pondhop_core::travel::Air;
-
-fn visit(x: f64, y: f64, service: f64, windows: &[(f64, f64)]) -> RoundVisit {
-    RoundVisit {
-        windows: windows.iter().map(|&(earliest, latest)| TimeWindow { earliest, latest }).collect(),
-        load: 1.0,
-        ..RoundVisit::at_any_time(Visit { position: Point::new(x, y), service_duration: service, service_energy: 0.0 })
-    }
-}
-
-fn fleet(num_drones: usize, turnaround: Option<f64>) -> Fleet {
-    Fleet { turnaround, ..Fleet::of(VehicleType::unlimited(num_drones)) }
-}
-
-fn round(visits: Vec<RoundVisit>, fleet: Fleet) -> Round {
-    Round::new(Point::new(0.0, 0.0), visits, fleet, Rounding::Exact).unwrap()
-}
-
-/// A random round in which every feature is on.
-fn random_round(random: &mut Random, num_visits: usize) -> Round {
-    let number = |random: &mut Random, most: usize| random.below(most) as f64;
-    let most_windows = 1 + random.below(2);
-    let visits = (0..num_visits)
-        .map(|_| {
-            let mut windows: Vec<(f64, f64)> = (0..random.below(most_windows + 1))
-                .map(|_| {
-                    let earliest = number(random, 300);
-                    (earliest, earliest + number(random, 80))
-                })
-                .collect();
-            windows.sort_by(|one, other| one.0.total_cmp(&other.0));
-            let mut visit = RoundVisit {
-                release: if random.below(3) == 0 { number(random, 100) } else { 0.0 },
-                load: number(random, 4),
-                priority: 1.0 + number(random, 3),
-                ..visit(number(random, 60), number(random, 60), number(random, 10), &windows)
-            };
-            visit.visit.service_energy = number(random, 60);
-            visit
-        })
-        .collect();
-    let rounding = if random.below(3) > 0 { Rounding::Exact } else { Rounding::Dimacs };
-    Round::new(Point::new(30.0, 30.0), visits, random_fleet(random), rounding).unwrap()
-}
-
-fn random_fleet(random: &mut Random) -> Fleet {
-    let number = |random: &mut Random, most: usize| random.below(most) as f64;
-    let unlimited_or = |random: &mut Random, least: f64, more: usize| {
-        if random.below(2) == 0 { f64::INFINITY } else { least + number(random, more) }
-    };
-    let way_home = (random.below(2) == 0)
-        .then(|| WayHome { speed: 1.0 + 4.0 * number(random, 3), fixed_duration: number(random, 9) });
-    let energy = Energy {
-        takeoff_energy: number(random, 30),
-        leg_power: 3.0,
-        leg_stop_power: 2.0,
-        way_home_power: 4.0,
-        way_home_fixed_energy: number(random, 30),
-        usable_energy: unlimited_or(random, 400.0, 600),
-    };
-    let vehicle_type = VehicleType {
-        speed: 1.0 + number(random, 3),
-        leg_stop_duration: number(random, 3),
-        takeoff_duration: number(random, 5),
-        way_home,
-        energy,
-        max_length: unlimited_or(random, 100.0, 200),
-        max_duration: unlimited_or(random, 100.0, 200),
-        ..VehicleType::unlimited(1 + random.below(3))
-    };
-    let layers = (0..if way_home.is_some() { random.below(3) } else { 0 })
-        .map(|_| Layer {
-            takeoff_duration: number(random, 9),
-            way_home_duration: number(random, 9),
-            takeoff_energy: number(random, 30),
-            way_home_energy: number(random, 30),
-        })
-        .collect();
-    let wind = Point::new(number(random, 5) - 2.0, number(random, 5) - 2.0);
-    Fleet {
-        layers,
-        air: Air { wind, max_airspeed: unlimited_or(random, 3.0, 3), drag_power: 0.1 },
-        capacity: 4.0 + number(random, 8),
-        shift: TimeWindow { earliest: number(random, 20), latest: 300.0 + number(random, 300) },
-        takeoff_interval: number(random, 5),
-        turnaround: (random.below(3) > 0).then(|| number(random, 30)),
-        num_pads: 1 + random.below(3),
-        ..Fleet::of(vehicle_type)
-    }
-}
+use random_rounds::{fleet, random_round, round, visit};
 
 fn assert_near(value: f64, hoped: f64) {
     assert!((value - hoped).abs() < 1e-6, "{value}, not {hoped}");
@@ -194,7 +106,7 @@ fn no_bound_exceeds_a_plan() {
     let (mut num_whole, mut gaps) = (0, 0.0);
     for seed in 0..8000 {
         let num_visits = 1 + random.below(if seed % 8 == 0 { 30 } else { 9 });
-        let task = random_round(&mut random, num_visits);
+        let task = random_round(&mut random, num_visits, true);
         let bound = makespan_bound(&task);
         let routes = solve_round(&task, &Options { seed, max_iterations: Some(200), ..Options::default() }).routes;
         let plan = evaluate_round(&task, &routes).unwrap();

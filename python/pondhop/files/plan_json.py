@@ -235,7 +235,7 @@ def _derived_round(content: Mapping[str, Any]) -> FarmPlan:
 def _plan_object(farm_plan: FarmPlan) -> dict[str, Any]:
     farm, solution, trips = farm_plan.farm, farm_plan.solution, farm_plan.trips
     lengths_m, energies_j = [trip.length_m for trip in trips], [trip.energy_j for trip in trips]
-    told = {unserved.pond: unserved for unserved in farm_plan.unserved}
+    told = farm_plan.reasons
     return {
         "schema": SCHEMA,
         "pondhop_version": __version__,

@@ -2,8 +2,8 @@
 //!
 //! Where nothing has its time, what counts is how many trips there are and how long they are in all: a plain min-max problem with
 //! as many drones as trips. Its routes are about equally full, so that the fewest trips that batteries and samples allow are
-//! found by trying, from a guess on. The longest go first to the drone that is free
-//! first. The plain engine flies in calm air; what breaks a limit in wind is taken out and put back by the search.
+//! found by trying, from a guess on. The longest go first to the drone that is free first. The plain engine flies in calm air; what
+//! breaks a limit in wind is taken out and put back by the search.
 //!
 //! O(plain searches of a few steps a visit).
 
@@ -89,24 +89,32 @@ fn balanced(round: &Round, num_trips: usize, seed: u64) -> Option<Vec<Vec<usize>
     Some(plain::solve(&problem, &options).routes)
 }
 
-/// How much a trip uses of what limits it most, as a share.
-fn filling(round: &Round, drone: &VehicleType, trip: &[usize]) -> f64 {
+/// What a trip takes when flown alone.
+struct Flown {
+    energy: f64,
+    duration: f64,
+    load: f64,
+}
+
+fn fly(round: &Round, drone: &VehicleType, trip: &[usize]) -> Flown {
     let (mut position, mut kind) = (round.depot(), LegKind::First);
-    let (mut energy, mut duration, mut load) = (0.0, 0.0, 0.0);
+    let mut flown = Flown { energy: 0.0, duration: 0.0, load: 0.0 };
     for &index in trip {
-        let visit = &round.visits()[index];
-        let leg = round.leg(position, visit.visit.position, kind, drone);
-        energy += leg.energy + visit.visit.service_energy;
-        duration += leg.duration + visit.visit.service_duration;
-        load += visit.load;
-        (position, kind) = (visit.visit.position, LegKind::Between);
+        let RoundVisit { visit, load, .. } = &round.visits()[index];
+        let leg = round.leg(position, visit.position, kind, drone);
+        flown.energy += leg.energy + visit.service_energy;
+        flown.duration += leg.duration + visit.service_duration;
+        flown.load += load;
+        (position, kind) = (visit.position, LegKind::Between);
     }
     let home = round.leg(position, round.depot(), LegKind::Last, drone);
-    let shares = [
-        (energy + home.energy) / drone.energy.usable_energy,
-        (duration + home.duration) / drone.max_duration,
-        load / round.fleet().capacity,
-    ];
+    Flown { energy: flown.energy + home.energy, duration: flown.duration + home.duration, ..flown }
+}
+
+/// How much a trip uses of what limits it most, as a share.
+fn filling(round: &Round, drone: &VehicleType, trip: &[usize]) -> f64 {
+    let Flown { energy, duration, load } = fly(round, drone, trip);
+    let shares = [energy / drone.energy.usable_energy, duration / drone.max_duration, load / round.fleet().capacity];
     shares.iter().copied().filter(|share| share.is_finite()).fold(0.0, f64::max)
 }
 
@@ -114,16 +122,8 @@ fn filling(round: &Round, drone: &VehicleType, trip: &[usize]) -> f64 {
 fn shared(round: &Round, drone: &VehicleType, trips: Vec<Vec<usize>>) -> Vec<Vec<Vec<usize>>> {
     let fleet = round.fleet();
     let num_drones = fleet.vehicle_type.num_available.min(round.visits().len());
-    let duration = |trip: &[usize]| -> f64 {
-        let (mut position, mut kind, mut duration) = (round.depot(), LegKind::First, 0.0);
-        for &index in trip {
-            let visit = round.visits()[index].visit;
-            duration += round.leg(position, visit.position, kind, drone).duration + visit.service_duration;
-            (position, kind) = (visit.position, LegKind::Between);
-        }
-        duration + round.leg(position, round.depot(), LegKind::Last, drone).duration
-    };
-    let mut timed: Vec<(f64, Vec<usize>)> = trips.into_iter().map(|trip| (duration(&trip), trip)).collect();
+    let mut timed: Vec<(f64, Vec<usize>)> =
+        trips.into_iter().map(|trip| (fly(round, drone, &trip).duration, trip)).collect();
     timed.sort_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
     let mut free: Vec<f64> = (0..num_drones).map(|drone| fleet.first_takeoff(drone)).collect();
     let mut routes = vec![Vec::new(); num_drones];
